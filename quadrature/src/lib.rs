@@ -1,0 +1,1 @@
+//! Quadrature on panels.

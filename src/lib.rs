@@ -1,0 +1,3 @@
+//! Boundary-integral solver for Stokes flow around axisymmetric bodies.
+
+pub mod curve;

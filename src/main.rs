@@ -1,0 +1,3 @@
+//! The `axistokes` command line.
+
+fn main() {}

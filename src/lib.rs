@@ -1,3 +1,5 @@
 //! Boundary-integral solver for Stokes flow around axisymmetric bodies.
 
 pub mod curve;
+pub mod kernel;
+pub mod special;

@@ -1,0 +1,37 @@
+//! The combined field: double layer plus a multiple of the single layer.
+
+use pulp::Simd;
+
+use super::modes::{Kernel, Parity};
+use super::moments::Moments;
+use super::pair::{Pair, Separation};
+use super::{DoubleLayer, SingleLayer};
+use crate::special::lanes::Lanes;
+
+/// The kernel $D_{ij} + \eta S_{ij}$ (Hebeker 1986): the second-kind equation $(\frac12 + D + \eta S)\sigma = f$ of the exterior
+/// Dirichlet problem has exactly one solution for every $\eta > 0$.
+#[derive(Clone, Copy, Debug)]
+pub struct CombinedField {
+    /// Weight of the single layer, in units of 1/length.
+    pub eta: f64,
+}
+
+impl Kernel<9> for CombinedField {
+    const PARITY: [Parity; 9] = Parity::OF_VELOCITY;
+
+    #[inline(always)]
+    fn mode<S: Simd>(&self, pair: &Pair<S>, m: &Moments<S>) -> [Lanes<S>; 9] {
+        let double = DoubleLayer.mode(pair, m);
+        let single = SingleLayer.mode(pair, m);
+        let eta = Lanes::splat(pair.r.0, self.eta);
+        std::array::from_fn(|k| eta.mul_add(single[k], double[k]))
+    }
+
+    #[inline(always)]
+    fn sample<S: Simd>(&self, s: &Separation<S>) -> [Lanes<S>; 9] {
+        let double = DoubleLayer.sample(s);
+        let single = SingleLayer.sample(s);
+        let eta = Lanes::splat(s.inv.0, self.eta);
+        std::array::from_fn(|k| eta.mul_add(single[k], double[k]))
+    }
+}

@@ -1,0 +1,153 @@
+//! Modes of well-separated pairs: the trapezoidal rule in the azimuth, all modes by FFT.
+//!
+//! The kernels are analytic in $t$ up to $\lvert\mathrm{Im}\, t\rvert = \mathrm{acosh}\,\chi$, so with $N$ samples mode $n$ is off by
+//! $e^{-(N - n)\,\mathrm{acosh}\,\chi}$. Four real sequences share a complex transform: two even ones and two odd ones,
+//! told apart afterwards by symmetry.
+
+use std::f64::consts::PI;
+use std::fmt;
+use std::sync::Arc;
+
+use num_complex::Complex64;
+use pulp::Simd;
+use rustfft::{Fft, FftPlanner};
+
+use super::modes::{Kernel, Parity};
+use super::pair::Pair;
+use crate::special::lanes::{Lanes, padded};
+
+/// Samples and transforms for one number of modes.
+pub(crate) struct Fourier {
+    n_max: usize,
+    /// Samples around the whole circle.
+    count: usize,
+    /// $1 - \cos t$ and $\sin t$ at the samples in $[0, \pi]$, padded.
+    c: Vec<f64>,
+    sin: Vec<f64>,
+    fft: Arc<dyn Fft<f64>>,
+}
+
+impl fmt::Debug for Fourier {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Fourier")
+            .field("n_max", &self.n_max)
+            .field("count", &self.count)
+            .finish()
+    }
+}
+
+/// Buffers of one pair.
+#[derive(Debug, Default)]
+pub(super) struct Workspace {
+    /// Entry after entry, the samples in $[0, \pi]$, padded.
+    samples: Vec<f64>,
+    sequence: Vec<Complex64>,
+    scratch: Vec<Complex64>,
+}
+
+/// Where doubles end: $-\ln 10^{-17}$.
+const DIGITS: f64 = 39.0;
+
+impl Fourier {
+    /// Samples for modes up to `n_max` of pairs with $\chi - 1 \ge$ `h`.
+    pub fn new(n_max: usize, h: f64) -> Self {
+        let decay = 2.0 * (0.5 * h).sqrt().asinh();
+        let least = n_max + (DIGITS / decay).ceil() as usize + 4;
+        let count = (least..)
+            .find(|&n| n % 4 == 0 && is_smooth(n))
+            .unwrap_or(least);
+        let half = padded(count / 2 + 1);
+        let t = |k: usize| 2.0 * PI * k as f64 / count as f64;
+        Self {
+            n_max,
+            count,
+            c: (0..half)
+                .map(|k| 2.0 * (0.5 * t(k)).sin().powi(2))
+                .collect(),
+            sin: (0..half).map(|k| t(k).sin()).collect(),
+            fft: FftPlanner::new().plan_fft_forward(count),
+        }
+    }
+
+    /// Samples every entry of the kernel for the pair in the first lane.
+    #[inline(always)]
+    pub fn sample<const K: usize, S: Simd>(
+        &self,
+        simd: S,
+        kernel: &impl Kernel<K>,
+        pair: &Pair<S>,
+        workspace: &mut Workspace,
+    ) {
+        let half = self.c.len();
+        workspace.samples.resize(K * half, 0.0);
+        for register in 0..half / S::F64_LANES {
+            let c = Lanes::load(simd, &self.c, register);
+            let sin = Lanes::load(simd, &self.sin, register);
+            let entries = kernel.sample(&pair.separation(c, sin));
+            for (k, entry) in entries.into_iter().enumerate() {
+                entry.store(&mut workspace.samples[k * half..(k + 1) * half], register);
+            }
+        }
+    }
+
+    /// Transforms the samples; mode `n` of entry `k` goes to `out[(n * K + k) * stride]`.
+    pub fn transform<const K: usize>(
+        &self,
+        parity: [Parity; K],
+        workspace: &mut Workspace,
+        out: &mut [f64],
+        stride: usize,
+    ) {
+        let Workspace {
+            samples,
+            sequence,
+            scratch,
+        } = workspace;
+        let (count, half) = (self.count, self.c.len());
+        sequence.resize(count, Complex64::default());
+        scratch.resize(self.fft.get_inplace_scratch_len(), Complex64::default());
+        let of = |wanted: Parity| (0..K).filter(move |&k| parity[k] == wanted);
+        let (mut even, mut odd) = (of(Parity::Even), of(Parity::Odd));
+        let scale = PI / count as f64;
+        loop {
+            let [f1, f2] = [even.next(), even.next()];
+            let [g1, g2] = [odd.next(), odd.next()];
+            if f1.is_none() && g1.is_none() {
+                return;
+            }
+            let at = |entry: Option<usize>, i: usize| entry.map_or(0.0, |k| samples[k * half + i]);
+            for i in 0..=count / 2 {
+                let f = Complex64::new(at(f1, i), at(f2, i));
+                let g = Complex64::new(at(g1, i), at(g2, i));
+                sequence[(count - i) % count] = f - g;
+                sequence[i] = f + g;
+            }
+            self.fft.process_with_scratch(sequence, scratch);
+            // Z(n) = (F1 + G2) + i (F2 - G1), with F even and G odd in n.
+            for n in 0..=self.n_max {
+                let (plus, minus) = (sequence[n], sequence[(count - n) % count]);
+                let (sum, difference) = (plus + minus, plus - minus);
+                for (entry, value) in [
+                    (f1, sum.re),
+                    (f2, sum.im),
+                    (g2, difference.re),
+                    (g1, -difference.im),
+                ] {
+                    if let Some(k) = entry {
+                        out[(n * K + k) * stride] = scale * value;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// No prime factors but 2, 3 and 5: a length the FFT is quick at.
+fn is_smooth(mut n: usize) -> bool {
+    for p in [2, 3, 5] {
+        while n.is_multiple_of(p) {
+            n /= p;
+        }
+    }
+    n == 1
+}

@@ -1,0 +1,78 @@
+//! The pressures of the single and the double layer.
+
+use std::f64::consts::PI;
+
+use pulp::Simd;
+
+use super::modes::{Kernel, Parity};
+use super::moments::Moments;
+use super::pair::{Pair, Separation};
+use crate::special::lanes::Lanes;
+
+/// The kernel $P^S_j = \bar x_j / 4\pi|\bar x|^3$; three entries, in units of 1/length².
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SingleLayerPressure;
+
+/// The kernel $P^D_j = (-\nu'_j/|\bar x|^3 + 3 \bar x_j\, \bar x\cdot\nu'/|\bar x|^5)/2\pi$ for viscosity 1; three entries, in units of
+/// 1/length³.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct DoubleLayerPressure;
+
+impl Kernel<3> for SingleLayerPressure {
+    const PARITY: [Parity; 3] = Parity::OF_PRESSURE;
+
+    #[inline(always)]
+    fn mode<S: Simd>(&self, pair: &Pair<S>, m: &Moments<S>) -> [Lanes<S>; 3] {
+        let factor = 1.0 / (4.0 * PI);
+        let e1 = m.e1 * pair.inv_rho2;
+        [
+            pair.a * e1 - 0.5 * pair.inv_rp * (m.e0 - m.e1),
+            m.n * pair.inv_rp * m.e0,
+            pair.b * e1,
+        ]
+        .map(|x| factor * x)
+    }
+
+    #[inline(always)]
+    fn sample<S: Simd>(&self, s: &Separation<S>) -> [Lanes<S>; 3] {
+        let strength = (1.0 / (4.0 * PI)) * s.inv * s.inv * s.inv;
+        s.xp.map(|x| strength * x)
+    }
+}
+
+impl Kernel<3> for DoubleLayerPressure {
+    const PARITY: [Parity; 3] = Parity::OF_PRESSURE;
+
+    #[inline(always)]
+    fn mode<S: Simd>(&self, pair: &Pair<S>, m: &Moments<S>) -> [Lanes<S>; 3] {
+        let Pair {
+            r,
+            a,
+            b,
+            nu_r,
+            nu_z,
+            ..
+        } = *pair;
+        let factor = 1.0 / (2.0 * PI);
+        let moments = m.cubic(pair);
+        let beta = 3.0 * (nu_r * a + nu_z * b);
+        let alpha = 3.0 * nu_r * r;
+        let even = |k: usize| beta * moments.g[k] - alpha * moments.g[k + 1];
+        let (g0, g1) = (even(0), even(1));
+        let e1 = m.e1 * pair.inv_rho2;
+        [
+            a * g0 - r * g1 - nu_r * e1,
+            r * (beta * moments.h[0] - alpha * moments.h[1]),
+            b * g0 - nu_z * e1,
+        ]
+        .map(|x| factor * x)
+    }
+
+    #[inline(always)]
+    fn sample<S: Simd>(&self, s: &Separation<S>) -> [Lanes<S>; 3] {
+        let inv2 = s.inv * s.inv;
+        let strength = (1.0 / (2.0 * PI)) * s.inv * inv2;
+        let along = 3.0 * inv2 * s.x_nu;
+        std::array::from_fn(|j| strength * (along * s.xp[j] - s.nu[j]))
+    }
+}

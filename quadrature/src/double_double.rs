@@ -4,7 +4,6 @@
 //! The error-free sum and product are Knuth's (1969) and the fused multiply-add one; the algorithms for
 //! the operations are those of Joldes, Muller & Popescu (2017). The crate `twofloat` (0.8) was tried:
 //! its `f64 / TwoFloat` and its `ln` keep only 17 to 18 digits.
-#![cfg_attr(not(test), expect(dead_code))]
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -44,6 +43,7 @@ fn two_product(a: f64, b: f64) -> Dd {
 }
 
 impl Dd {
+    pub(crate) const ZERO: Self = Self { hi: 0.0, lo: 0.0 };
     pub(crate) const ONE: Self = Self { hi: 1.0, lo: 0.0 };
     const LN_2: Self = Self {
         hi: std::f64::consts::LN_2,

@@ -87,6 +87,15 @@ impl GaussLegendre {
     }
 }
 
+/// Node `i` and its weight in double-double; needs `i < order`, `order > 0`.
+pub(crate) fn node_and_weight(order: usize, i: usize) -> (Dd, Dd) {
+    let from_right = order - 1 - i;
+    let left = i < from_right;
+    let (node, slope) = zero(order, if left { i } else { from_right });
+    let weight = Dd::from(2.0) / ((Dd::ONE - node * node) * slope * slope);
+    (if left { -node } else { node }, weight)
+}
+
 /// The `i`-th zero of `P_n` counted from the right, and `P'_n` there.
 fn zero(n: usize, i: usize) -> (Dd, Dd) {
     let order = n as f64;

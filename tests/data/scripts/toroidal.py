@@ -130,4 +130,5 @@ def main():
     print("largest disagreement", nstr(worst, 3), file=sys.stderr)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -1,3 +1,4 @@
 //! Boundary-integral solver for Stokes flow around axisymmetric bodies.
 
+pub mod case;
 pub mod curve;

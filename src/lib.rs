@@ -2,3 +2,6 @@
 
 pub mod case;
 pub mod curve;
+pub mod output;
+pub mod progress;
+pub mod solve;

@@ -129,6 +129,14 @@ fn defaults_are_documented_ones() {
 }
 
 #[test]
+fn line_ends_of_other_systems_are_read() {
+    let text =
+        "\u{feff}[shapes.a]\r\nkind = 'sphere'\r\nradius = 1\r\n[[bodies]]\r\nshape = 'a'\r\n";
+    let case = Case::parse(text, "windows.toml").unwrap();
+    assert_eq!(case.bodies[0].line, 4);
+}
+
+#[test]
 fn a_profile_lies_beside_its_case() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("profile-beside-case");
     std::fs::create_dir_all(&folder).unwrap();

@@ -4,7 +4,8 @@ use std::fmt::{self, Display, Formatter};
 
 /// What is wrong with a case: one line, `FILE:LINE: message`.
 ///
-/// Control characters of the input are escaped, so that the message stays on one line whatever the file held.
+/// Control characters of the input are escaped and long names cut, so that the message stays on one line
+/// whatever the file held.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub struct CaseError {
     file: String,
@@ -43,8 +44,13 @@ impl Display for CaseError {
 }
 
 fn one_line(text: &str) -> String {
-    let mut line = String::with_capacity(text.len());
-    for c in text.chars() {
+    const LONGEST: usize = 500;
+    let mut line = String::new();
+    for (i, c) in text.chars().enumerate() {
+        if i == LONGEST {
+            line.push_str("...");
+            break;
+        }
         if c.is_control() || matches!(c, '\u{2028}' | '\u{2029}' | '\u{202e}') {
             line.extend(c.escape_default());
         } else {

@@ -5,8 +5,8 @@ use std::fs::{File, metadata};
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-/// The largest file that is read, in bytes (16 MiB).
-pub const LARGEST_FILE: u64 = 16 << 20;
+/// The largest file that is read, in bytes (4 MiB): whatever it holds, it is judged within a second or so.
+pub const LARGEST_FILE: u64 = 4 << 20;
 
 /// The text of a regular file of at most [`LARGEST_FILE`] bytes; everything else is refused before it is read.
 pub fn read_text(path: &Path) -> Result<String, CaseError> {

@@ -21,7 +21,7 @@
 //! let error = Case::parse("viscosity = -1", "bad.toml").unwrap_err();
 //! assert_eq!(
 //!     error.to_string(),
-//!     "bad.toml:1: viscosity = -1: expected a viscosity, a finite number greater than zero"
+//!     "bad.toml:1: viscosity = -1: expected a viscosity, a finite number greater than zero (1e-30 to 1e30)"
 //! );
 //! ```
 

@@ -7,10 +7,10 @@ use std::ops::{Range, RangeInclusive};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// The largest magnitude a number of a case may have: its square and its cube are still representable.
-const LARGEST: f64 = 1e100;
+/// The largest magnitude a number of a case may have: products of a dozen are still representable.
+const LARGEST: f64 = 1e30;
 /// The smallest a quantity that must be positive may be.
-const SMALLEST: f64 = 1e-100;
+const SMALLEST: f64 = 1e-30;
 
 /// One value with the key that leads to it, such as `shapes.rod.polar`.
 #[derive(Clone)]
@@ -117,7 +117,7 @@ impl<'a> Node<'a> {
         self.value()
             .and_then(as_number)
             .filter(|x| x.abs() <= LARGEST)
-            .ok_or_else(|| self.expected(format_args!("{what} (at most 1e100 in magnitude)")))
+            .ok_or_else(|| self.expected(format_args!("{what} (at most 1e30 in magnitude)")))
     }
 
     /// A finite number greater than zero, described by `what`.
@@ -125,7 +125,11 @@ impl<'a> Node<'a> {
         self.value()
             .and_then(as_number)
             .filter(|x| (SMALLEST..=LARGEST).contains(x))
-            .ok_or_else(|| self.expected(format_args!("{what}, a finite number greater than zero")))
+            .ok_or_else(|| {
+                self.expected(format_args!(
+                    "{what}, a finite number greater than zero (1e-30 to 1e30)"
+                ))
+            })
     }
 
     /// An integer within a range, described by `what`.

@@ -1,8 +1,10 @@
 //! "Did you mean ...?"
 
+/// The longest name that is compared or shown, in characters.
+const LONGEST: usize = 40;
+
 /// The known name nearest to `given`, if it is near enough to be a slip of the keyboard.
 pub(super) fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
-    const LONGEST: usize = 64;
     if given.len() > LONGEST {
         return None;
     }
@@ -27,7 +29,11 @@ pub(super) fn hint(given: &str, known: &[&str]) -> String {
         return text;
     }
     let more = if known.len() > SHOWN { ", ..." } else { "" };
-    let list = known[..known.len().min(SHOWN)].join(", ");
+    let shown = known.iter().take(SHOWN);
+    let names: Vec<String> = shown
+        .map(|name| name.chars().take(LONGEST).collect())
+        .collect();
+    let list = names.join(", ");
     text.push_str(&format!(" (known: {list}{more})"));
     text
 }

@@ -9,7 +9,8 @@ fn functions_differences_and_derivatives_match_high_precision() {
     let mut worst = [(0.0f64, String::new()), (0.0, String::new())];
     for line in table.lines().filter(|l| !l.starts_with('#')).skip(1) {
         let fields: Vec<&str> = line.split(',').collect();
-        let [h, value, difference] = [0, 3, 4].map(|k| fields[k].parse::<f64>().unwrap_or(f64::NAN));
+        let [h, value, difference] =
+            [0, 3, 4].map(|k| fields[k].parse::<f64>().unwrap_or(f64::NAN));
         let [n, k] = [1, 2].map(|k| fields[k].parse::<usize>().expect("an index"));
         let functions = Toroidal::new(h, n);
         let derivative = functions.derivative(n, k).expect("k <= 3");
@@ -25,7 +26,10 @@ fn functions_differences_and_derivatives_match_high_precision() {
         }
         rows += 1;
     }
-    println!("functions and differences: {:?}\nderivatives: {:?}", worst[0], worst[1]);
+    println!(
+        "functions and differences: {:?}\nderivatives: {:?}",
+        worst[0], worst[1]
+    );
     assert!(rows > 400, "only {rows} rows read");
     assert!(worst[0].0 <= 1e-13, "{:?}", worst[0]);
     assert!(worst[1].0 <= 1e-13, "{:?}", worst[1]);

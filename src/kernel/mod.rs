@@ -30,6 +30,8 @@ mod moments;
 mod pair;
 mod pressure;
 mod single_layer;
+#[cfg(test)]
+mod tests;
 mod traction;
 
 pub(crate) use combined::CombinedField;

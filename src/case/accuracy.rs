@@ -1,0 +1,99 @@
+//! How accurate the answer must be, or how finely the shapes are cut.
+
+use super::CaseError;
+use super::node::Node;
+use super::section::Section;
+
+/// The smallest tolerance double precision can serve.
+pub const SMALLEST_TOLERANCE: f64 = 1e-14;
+/// Most panels on one generating curve.
+pub const MOST_PANELS: usize = 1000;
+/// Most azimuthal modes.
+pub const MOST_MODES: usize = 1000;
+/// Most memory, in GiB, that panels, order and modes by hand may ask for.
+const MOST_MEMORY: f64 = 64.0;
+
+/// What `[accuracy]` asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Accuracy {
+    /// The solver picks panels and modes for this relative error of velocities, forces and torques.
+    Tolerance(f64),
+    /// Chosen by hand: nothing is promised, the error is only estimated.
+    ByHand {
+        /// Panels on the generating curve.
+        panels: usize,
+        /// Nodes on a panel: 10 or 16.
+        order: usize,
+        /// Azimuthal modes.
+        modes: usize,
+    },
+}
+
+impl Default for Accuracy {
+    fn default() -> Self {
+        Self::Tolerance(1e-8)
+    }
+}
+
+/// Reads `[accuracy]`.
+pub(super) fn read_accuracy(node: Node<'_>) -> Result<Accuracy, CaseError> {
+    const BY_HAND: [&str; 3] = ["panels", "order", "modes"];
+    let section = Section::new(node, &["tolerance", "panels", "order", "modes"])?;
+    let by_hand = BY_HAND.iter().find_map(|key| section.optional(key));
+    match (section.optional("tolerance"), by_hand) {
+        (None, None) => Err(section
+            .node
+            .error("[accuracy] is empty: expected tolerance, or panels, order and modes")),
+        (Some(node), None) => read_tolerance(&node).map(Accuracy::Tolerance),
+        (None, Some(_)) => read_by_hand(&section),
+        (Some(tolerance), Some(other)) => {
+            let later = if tolerance.line > other.line {
+                &tolerance
+            } else {
+                &other
+            };
+            Err(later.error(format!(
+                "both {} and {} are given: expected tolerance alone, or panels, order and modes",
+                tolerance.key, other.key
+            )))
+        }
+    }
+}
+
+/// A relative tolerance that doubles can serve.
+pub(super) fn read_tolerance(node: &Node<'_>) -> Result<f64, CaseError> {
+    let range = "a tolerance of at least 1e-14 (double precision) and less than 1";
+    let value = node.number().map_err(|_| node.expected(range))?;
+    if (SMALLEST_TOLERANCE..1.0).contains(&value) {
+        Ok(value)
+    } else {
+        Err(node.expected(range))
+    }
+}
+
+fn read_by_hand(section: &Section<'_>) -> Result<Accuracy, CaseError> {
+    let all = "all three of panels, order and modes";
+    let panels_node = section.required("panels", all)?;
+    let order_node = section.required("order", all)?;
+    let modes_node = section.required("modes", all)?;
+    let panels = panels_node.integer("a number of panels", 1..=MOST_PANELS)?;
+    let order = order_node
+        .integer("10 or 16", 1..=16)
+        .ok()
+        .filter(|order| [10, 16].contains(order))
+        .ok_or_else(|| order_node.expected("10 or 16"))?;
+    let modes = modes_node.integer("a number of modes", 1..=MOST_MODES)?;
+    let rows = (3 * panels * order) as f64;
+    let memory = (modes + 1) as f64 * rows * rows * 8.0 / f64::from(1 << 30);
+    if memory > MOST_MEMORY {
+        return Err(panels_node.error(format!(
+            "panels = {panels}, order = {order}, modes = {modes} would need {memory:.0} GiB of memory: \
+             expected a choice that needs at most {MOST_MEMORY} GiB"
+        )));
+    }
+    Ok(Accuracy::ByHand {
+        panels,
+        order,
+        modes,
+    })
+}

@@ -1,0 +1,236 @@
+//! A value of the case's tree that knows its key and its line, and the readers of the simple types.
+
+use super::source::Source;
+use super::{CaseError, Located};
+use std::fmt::Display;
+use std::ops::{Range, RangeInclusive};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// The largest magnitude a number of a case may have: products of a dozen are still representable.
+const LARGEST: f64 = 1e30;
+/// The smallest a quantity that must be positive may be.
+const SMALLEST: f64 = 1e-30;
+
+/// One value with the key that leads to it, such as `shapes.rod.polar`.
+#[derive(Clone)]
+pub(super) struct Node<'a> {
+    pub(super) source: &'a Source<'a>,
+    pub(super) key: String,
+    pub(super) line: usize,
+    content: Content<'a>,
+}
+
+#[derive(Clone)]
+enum Content<'a> {
+    Root(&'a DeTable<'a>),
+    Value(&'a Spanned<DeValue<'a>>),
+}
+
+impl<'a> Node<'a> {
+    pub(super) fn root<'t>(source: &'a Source<'t>, document: &'a DeTable<'t>) -> Self
+    where
+        't: 'a,
+    {
+        Self {
+            source,
+            key: String::new(),
+            line: 1,
+            content: Content::Root(document),
+        }
+    }
+
+    /// A value below this one, at the line of `place`.
+    pub(super) fn below(
+        &self,
+        key: String,
+        place: Range<usize>,
+        value: &'a Spanned<DeValue<'a>>,
+    ) -> Self {
+        Self {
+            source: self.source,
+            key,
+            line: self.source.line(place.start),
+            content: Content::Value(value),
+        }
+    }
+
+    /// Attaches this node's line to what was read from it.
+    pub(super) fn located<T>(&self, value: T) -> Located<T> {
+        let line = self.line;
+        Located { line, value }
+    }
+
+    /// An error at this node: `key = value: expected ...`.
+    pub(super) fn expected(&self, what: impl Display) -> CaseError {
+        let message = match &self.content {
+            Content::Value(value) => match value.get_ref() {
+                DeValue::Table(_) => format!("{} is a table: expected {what}", self.key),
+                _ => {
+                    let quoted = self.source.quote(value.span());
+                    format!("{} = {quoted}: expected {what}", self.key)
+                }
+            },
+            Content::Root(_) => format!("expected {what}"),
+        };
+        self.source.error(Some(self.line), message)
+    }
+
+    /// An error at this node in other words.
+    pub(super) fn error(&self, message: impl Display) -> CaseError {
+        self.source.error(Some(self.line), message)
+    }
+
+    pub(super) fn table(&self) -> Result<&'a DeTable<'a>, CaseError> {
+        match &self.content {
+            Content::Root(table) => Ok(table),
+            Content::Value(value) => match value.get_ref() {
+                DeValue::Table(table) => Ok(table),
+                DeValue::Array(array) if array.iter().any(|v| v.get_ref().is_table()) => Err(self
+                    .error(format!(
+                        "{} is an array of tables: expected one table, [{}]",
+                        self.key, self.key
+                    ))),
+                _ => Err(self.expected(format!("a table, [{}]", self.key))),
+            },
+        }
+    }
+
+    /// The elements of an array.
+    pub(super) fn array(&self, what: &str) -> Result<Vec<Node<'a>>, CaseError> {
+        let items = self.items(what)?.iter().enumerate();
+        Ok(items
+            .map(|(i, item)| self.below(format!("{}[{i}]", self.key), item.span(), item))
+            .collect())
+    }
+
+    fn items(&self, what: &str) -> Result<&'a [Spanned<DeValue<'a>>], CaseError> {
+        match self.value() {
+            Some(DeValue::Array(array)) => Ok(array),
+            _ => Err(self.expected(what)),
+        }
+    }
+
+    /// A finite number, integers included.
+    pub(super) fn number(&self) -> Result<f64, CaseError> {
+        let what = "a finite number";
+        self.value()
+            .and_then(as_number)
+            .filter(|x| x.abs() <= LARGEST)
+            .ok_or_else(|| self.expected(format_args!("{what} (at most 1e30 in magnitude)")))
+    }
+
+    /// A finite number greater than zero, described by `what`.
+    pub(super) fn positive(&self, what: &str) -> Result<f64, CaseError> {
+        self.value()
+            .and_then(as_number)
+            .filter(|x| (SMALLEST..=LARGEST).contains(x))
+            .ok_or_else(|| {
+                self.expected(format_args!(
+                    "{what}, a finite number greater than zero (1e-30 to 1e30)"
+                ))
+            })
+    }
+
+    /// An integer within a range, described by `what`.
+    pub(super) fn integer(
+        &self,
+        what: &str,
+        range: RangeInclusive<usize>,
+    ) -> Result<usize, CaseError> {
+        let value = match self.value() {
+            Some(DeValue::Integer(i)) => usize::from_str_radix(i.as_str(), i.radix()).ok(),
+            _ => None,
+        };
+        value.filter(|n| range.contains(n)).ok_or_else(|| {
+            self.expected(format_args!(
+                "{what}, an integer from {} to {}",
+                range.start(),
+                range.end()
+            ))
+        })
+    }
+
+    /// Three finite numbers.
+    pub(super) fn vector(&self) -> Result<[f64; 3], CaseError> {
+        let fail = || self.expected("three finite numbers, [x, y, z]");
+        let items = self.items("three finite numbers, [x, y, z]")?;
+        let items: &[_; 3] = items.try_into().map_err(|_| fail())?;
+        let mut vector = [0.0; 3];
+        for (component, item) in vector.iter_mut().zip(items) {
+            *component = as_number(item.get_ref())
+                .filter(|x| x.abs() <= LARGEST)
+                .ok_or_else(fail)?;
+        }
+        Ok(vector)
+    }
+
+    /// Three finite numbers, not all zero, scaled to length one.
+    pub(super) fn direction(&self) -> Result<[f64; 3], CaseError> {
+        let vector = self.vector()?;
+        let largest = vector.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        if largest < SMALLEST {
+            return Err(self.expected("a vector of any length but zero"));
+        }
+        let scaled = vector.map(|x| x / largest);
+        let length = scaled.iter().map(|x| x * x).sum::<f64>().sqrt();
+        Ok(scaled.map(|x| x / length))
+    }
+
+    /// A list of finite numbers, at least one.
+    pub(super) fn numbers(&self) -> Result<Vec<f64>, CaseError> {
+        let items = self.array("a list of finite numbers")?;
+        if items.is_empty() {
+            return Err(self.expected("a list of at least one finite number"));
+        }
+        items.iter().map(Node::number).collect()
+    }
+
+    /// A text.
+    pub(super) fn string(&self, what: &str) -> Result<&'a str, CaseError> {
+        match self.value() {
+            Some(DeValue::String(text)) if !text.is_empty() => Ok(text),
+            _ => Err(self.expected(what)),
+        }
+    }
+
+    /// One of a few words.
+    pub(super) fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Result<T, CaseError> {
+        let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
+        let list = names.join(", ");
+        let word = self.string(&format!("one of {list}"))?;
+        if let Some((_, value)) = choices.iter().find(|(name, _)| *name == word) {
+            return Ok(*value);
+        }
+        let meant = super::suggest::nearest(word, &names)
+            .map(|name| format!("; did you mean `{name}`?"))
+            .unwrap_or_default();
+        Err(self.expected(format_args!("one of {list}{meant}")))
+    }
+
+    /// `true` or `false`.
+    pub(super) fn boolean(&self) -> Result<bool, CaseError> {
+        self.value()
+            .and_then(DeValue::as_bool)
+            .ok_or_else(|| self.expected("true or false"))
+    }
+
+    fn value(&self) -> Option<&'a DeValue<'a>> {
+        match self.content {
+            Content::Root(_) => None,
+            Content::Value(value) => Some(value.get_ref()),
+        }
+    }
+}
+
+/// The number a TOML integer or float stands for; infinities and NaN pass.
+fn as_number(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Float(x) => x.as_str().parse().ok(),
+        DeValue::Integer(i) if i.radix() == 10 => i.as_str().parse().ok(),
+        DeValue::Integer(i) => i64::from_str_radix(i.as_str(), i.radix())
+            .ok()
+            .map(|i| i as f64),
+        _ => None,
+    }
+}

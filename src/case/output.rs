@@ -1,0 +1,26 @@
+//! What is written besides the answer.
+
+use super::CaseError;
+use super::node::Node;
+use super::section::Section;
+use std::path::PathBuf;
+
+/// What `[output]` asks for.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct OutputOptions {
+    /// Folder of the files, as given.
+    pub directory: Option<PathBuf>,
+    /// Whether VTK files are written.
+    pub vtk: bool,
+}
+
+/// Reads `[output]`.
+pub(super) fn read_output(node: Node<'_>) -> Result<OutputOptions, CaseError> {
+    let section = Section::new(node, &["directory", "vtk"])?;
+    let directory = section.read("directory", |node| {
+        Ok(PathBuf::from(node.string("the path of a folder")?))
+    })?;
+    let vtk = section.read("vtk", Node::boolean)?.unwrap_or_default();
+    Ok(OutputOptions { directory, vtk })
+}

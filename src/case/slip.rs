@@ -1,0 +1,56 @@
+//! Tangential slip on a body's surface.
+
+use super::CaseError;
+use super::node::Node;
+use super::section::Section;
+use super::shape::ShapeSpec;
+
+/// A tangential velocity of the surface, in the frame of the body.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Slip {
+    /// Squirming modes of a sphere.
+    Squirmer {
+        /// The amplitudes `b_1, b_2, ...`, velocities.
+        b: Vec<f64>,
+    },
+    /// From one pole of a spheroid to the other.
+    PoleToPole {
+        /// Speed scale of the slip.
+        speed: f64,
+    },
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Squirmer,
+    PoleToPole,
+}
+
+/// Reads `slip = { kind = ... }` of a body of the given shape.
+pub(super) fn read_slip(node: Node<'_>, shape: &ShapeSpec) -> Result<Slip, CaseError> {
+    let section = Section::open(node)?;
+    let kind_node = section.required("kind", "one of squirmer, pole-to-pole")?;
+    let kind = kind_node.choice(&[
+        ("squirmer", Kind::Squirmer),
+        ("pole-to-pole", Kind::PoleToPole),
+    ])?;
+    match kind {
+        Kind::Squirmer => {
+            section.check(&["kind", "b"])?;
+            if !matches!(shape, ShapeSpec::Sphere { .. }) {
+                return Err(kind_node.expected("a sphere, the only shape with squirming modes"));
+            }
+            let b = section.required("b", "a list of velocities")?.numbers()?;
+            Ok(Slip::Squirmer { b })
+        }
+        Kind::PoleToPole => {
+            section.check(&["kind", "speed"])?;
+            if !matches!(shape, ShapeSpec::Sphere { .. } | ShapeSpec::Spheroid { .. }) {
+                return Err(kind_node.expected("a spheroid, the only shape with this slip"));
+            }
+            let speed = section.required("speed", "a velocity")?.number()?;
+            Ok(Slip::PoleToPole { speed })
+        }
+    }
+}

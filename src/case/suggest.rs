@@ -1,0 +1,74 @@
+//! "Did you mean ...?"
+
+/// The longest name that is compared or shown, in characters.
+const LONGEST: usize = 40;
+
+/// The known name nearest to `given`, if it is near enough to be a slip of the keyboard.
+pub(super) fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
+    if given.len() > LONGEST {
+        return None;
+    }
+    let given = given.to_lowercase();
+    known
+        .iter()
+        .filter(|name| name.len() <= LONGEST)
+        .map(|&name| (distance(&given, &name.to_lowercase()), name))
+        .filter(|&(d, name)| d <= 1 + name.len().min(given.len()) / 3)
+        .min()
+        .map(|(_, name)| name)
+}
+
+/// `, did you mean ...?` when a known name is near, and the list of known names.
+pub(super) fn hint(given: &str, known: &[&str]) -> String {
+    const SHOWN: usize = 12;
+    let mut text = match nearest(given, known) {
+        Some(name) => format!(", did you mean `{name}`?"),
+        None => String::new(),
+    };
+    if known.is_empty() {
+        return text;
+    }
+    let more = if known.len() > SHOWN { ", ..." } else { "" };
+    let shown = known.iter().take(SHOWN);
+    let names: Vec<String> = shown
+        .map(|name| name.chars().take(LONGEST).collect())
+        .collect();
+    let list = names.join(", ");
+    text.push_str(&format!(" (known: {list}{more})"));
+    text
+}
+
+/// Levenshtein's distance: insertions, deletions and substitutions that turn `a` into `b`.
+fn distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, ca) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, &cb) in b.iter().enumerate() {
+            let substituted = diagonal + usize::from(ca != cb);
+            diagonal = row[j + 1];
+            row[j + 1] = substituted.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finds_the_slip() {
+        let known = ["polar", "equatorial", "kind"];
+        assert_eq!(nearest("polr", &known), Some("polar"));
+        assert_eq!(nearest("equitorial", &known), Some("equatorial"));
+        assert_eq!(nearest("temperature", &known), None);
+    }
+
+    #[test]
+    fn distance_is_levenshtein() {
+        assert_eq!(distance("kitten", "sitting"), 3);
+        assert_eq!(distance("", "abc"), 3);
+    }
+}

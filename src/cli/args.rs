@@ -1,0 +1,116 @@
+//! What can be typed.
+
+use super::streams;
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+const EXAMPLES: &str = "\
+Examples:
+  axistokes solve sphere-drag.toml            the answer as a table
+  axistokes solve sphere-drag.toml --json     the answer as one JSON object
+  axistokes --threads 4 converge --quick      the convergence study, small, on four threads
+
+Exit status: 0 solved, 2 bad input (one line on stderr, nothing written),
+3 solved but the error estimate misses the tolerance, 1 anything else.";
+
+const SOLVE_EXAMPLE: &str = "\
+A first case, the drag of a sphere (the force is 6 pi in z):
+
+  [shapes.ball]
+  kind = \"sphere\"
+  radius = 1.0
+
+  [[bodies]]
+  shape = \"ball\"
+  velocity = [0.0, 0.0, 1.0]
+
+  [accuracy]
+  tolerance = 1e-10
+
+  [probes]
+  points = [[0.0, 0.0, 2.0]]";
+
+/// Stokes flow around axisymmetric bodies, with an error that is checked.
+#[derive(Debug, Parser)]
+#[command(name = "axistokes", version, after_help = EXAMPLES)]
+pub struct Arguments {
+    /// Threads to use; 0 takes one per core.
+    #[arg(long, global = true, default_value_t = 0, value_name = "N",
+          value_parser = clap::value_parser!(u16).range(0..=1024))]
+    pub threads: u16,
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The subcommands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Solve a case once: forces, torques, velocities and pressure at the probes.
+    #[command(after_help = SOLVE_EXAMPLE)]
+    Solve(Solve),
+    /// Repeat the convergence study: errors over panels and modes, time over unknowns.
+    Converge(Converge),
+    /// Advance the bodies of a case in time (not built yet).
+    #[command(hide = true)]
+    Simulate {
+        /// Whatever was typed.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        ignored: Vec<std::ffi::OsString>,
+    },
+}
+
+/// Arguments of `solve`.
+#[derive(Args, Debug)]
+pub struct Solve {
+    /// The case file.
+    #[arg(value_name = "CASE.toml")]
+    pub case: PathBuf,
+    /// Print one JSON object and nothing else on stdout.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `converge`.
+#[derive(Args, Debug)]
+pub struct Converge {
+    /// Folder for tables and plots, made if it does not exist.
+    #[arg(long, value_name = "DIR", default_value = "convergence")]
+    pub output: PathBuf,
+    /// Few resolutions only: seconds instead of minutes.
+    #[arg(long)]
+    pub quick: bool,
+}
+
+/// Prints help or version on stdout; an error of usage as one line on stderr.
+pub fn explain(message: &clap::Error) -> ExitCode {
+    use clap::error::ErrorKind;
+    if message.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        streams::complain("no command: expected solve, converge or --help (see axistokes --help)");
+        return ExitCode::from(2);
+    }
+    if !message.use_stderr() {
+        // a closed pipe is not an error here
+        let _ = message.print();
+        return ExitCode::SUCCESS;
+    }
+    let text = message.to_string();
+    let lines = text.lines().take_while(|line| !line.starts_with("Usage:"));
+    let words: Vec<&str> = lines.flat_map(str::split_whitespace).collect();
+    let line = words.join(" ");
+    let line = line.trim_start_matches("error: ");
+    streams::complain(&format!("{line} (see axistokes --help)"));
+    ExitCode::from(2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn arguments_are_consistent() {
+        Arguments::command().debug_assert();
+    }
+}

@@ -1,0 +1,39 @@
+//! Why the program ends badly, and its exit status.
+
+use axistokes::solve::SolveError;
+use std::process::ExitCode;
+
+/// Why a command failed.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// The input is at fault: status 2.
+    #[error("{0}")]
+    Input(String),
+    /// The answer is worse than asked: status 3.
+    #[error("{0}")]
+    Missed(String),
+    /// Something else went wrong: status 1.
+    #[error("{0}")]
+    Other(String),
+}
+
+impl Failure {
+    /// The exit status of the program.
+    pub fn status(&self) -> ExitCode {
+        ExitCode::from(match self {
+            Self::Input(_) => 2,
+            Self::Missed(_) => 3,
+            Self::Other(_) => 1,
+        })
+    }
+}
+
+impl From<SolveError> for Failure {
+    fn from(error: SolveError) -> Self {
+        let line = error.to_string();
+        match error {
+            SolveError::Case(_) | SolveError::NotBuilt => Self::Input(line),
+            _ => Self::Other(line),
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! The answer to a case.
+
+use serde::{Deserialize, Serialize};
+
+/// Everything one solve reports; as JSON it is the contract of `axistokes solve --json`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// One entry per body, in the order of the case.
+    pub bodies: Vec<BodyReport>,
+    /// One entry per probe, in the order of the case.
+    pub probes: Vec<ProbeReport>,
+    /// Estimated error: of the velocities at the probes relative to the largest speed imposed, and of forces,
+    /// torques and rigid velocities relative to their largest value.
+    pub error_estimate: f64,
+    /// Iterations of the linear solver; 0 for a direct solve.
+    pub iterations: usize,
+    /// Unknowns of the linear system, all modes together.
+    pub unknowns: usize,
+    /// One entry per shape in use.
+    pub discretization: Vec<Discretization>,
+    /// Seconds spent in each stage.
+    pub timings: Timings,
+    /// Error against the known flow, only for a case with `[test]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub test: Option<KnownFlowReport>,
+}
+
+/// Motion and load of one body, in the laboratory frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct BodyReport {
+    /// Velocity of the centre.
+    pub velocity: [f64; 3],
+    /// Angular velocity.
+    pub angular_velocity: [f64; 3],
+    /// Force exerted by the body on the fluid.
+    pub force: [f64; 3],
+    /// Torque about the centre exerted by the body on the fluid.
+    pub torque: [f64; 3],
+}
+
+/// The flow at one probe.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ProbeReport {
+    /// The probe, as in the case.
+    pub point: [f64; 3],
+    /// Total velocity, background included.
+    pub velocity: [f64; 3],
+    /// Pressure, vanishing at infinity.
+    pub pressure: f64,
+}
+
+/// How one shape was discretised.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Discretization {
+    /// Name of the shape.
+    pub shape: String,
+    /// Panels on its generating curve.
+    pub panels: usize,
+    /// Nodes on a panel.
+    pub order: usize,
+    /// Azimuthal modes.
+    pub modes: usize,
+}
+
+/// Seconds of wall clock spent in each stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Timings {
+    /// Assembling the modal matrices.
+    pub assemble: f64,
+    /// Factoring them.
+    pub factor: f64,
+    /// Solving: substitutions, or iterations.
+    pub iterate: f64,
+    /// Evaluating the flow at the probes.
+    pub evaluate: f64,
+}
+
+/// Largest error of the velocity at the probes against a known flow.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct KnownFlowReport {
+    /// Largest error in units of velocity.
+    pub absolute_error: f64,
+    /// The same, relative to the largest speed of the known flow on the bodies.
+    pub relative_error: f64,
+}
+
+impl Report {
+    /// The name of the first number that is infinite or not a number: such a report must not be shown.
+    pub fn not_finite(&self) -> Option<String> {
+        let finite = |v: &[f64; 3]| v.iter().all(|x| x.is_finite());
+        for (i, body) in self.bodies.iter().enumerate() {
+            let quantities = [
+                ("velocity", &body.velocity),
+                ("angular_velocity", &body.angular_velocity),
+                ("force", &body.force),
+                ("torque", &body.torque),
+            ];
+            if let Some((name, _)) = quantities.iter().find(|(_, v)| !finite(v)) {
+                return Some(format!("bodies[{i}].{name}"));
+            }
+        }
+        for (i, probe) in self.probes.iter().enumerate() {
+            if !finite(&probe.velocity) {
+                return Some(format!("probes[{i}].velocity"));
+            }
+            if !probe.pressure.is_finite() {
+                return Some(format!("probes[{i}].pressure"));
+            }
+        }
+        if !self.error_estimate.is_finite() {
+            return Some("error_estimate".into());
+        }
+        let test = self.test.unwrap_or_default();
+        if !(test.absolute_error.is_finite() && test.relative_error.is_finite()) {
+            return Some("test".into());
+        }
+        None
+    }
+
+    /// One JSON object on one line; every number reads back to the same double.
+    pub fn json(&self) -> serde_json::Result<String> {
+        serde_json::to_string(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn json_has_the_names_of_the_contract() {
+        let report = Report {
+            bodies: vec![BodyReport {
+                force: [0.1, 1.0 / 3.0, std::f64::consts::PI],
+                ..BodyReport::default()
+            }],
+            probes: vec![ProbeReport::default()],
+            discretization: vec![Discretization {
+                shape: "rod".into(),
+                ..Discretization::default()
+            }],
+            ..Report::default()
+        };
+        let json = report.json().unwrap();
+        let value: serde_json::Value = serde_json::from_str(&json).unwrap();
+        let mut keys: Vec<_> = value.as_object().unwrap().keys().collect();
+        keys.sort();
+        let expected = [
+            "bodies",
+            "discretization",
+            "error_estimate",
+            "iterations",
+            "probes",
+            "timings",
+            "unknowns",
+        ];
+        assert_eq!(keys, expected);
+        assert!(json.contains("[0.1,0.3333333333333333,3.141592653589793]"));
+        assert_eq!(serde_json::from_str::<Report>(&json).unwrap(), report);
+    }
+
+    #[test]
+    fn test_appears_only_when_given() {
+        let report = Report {
+            test: Some(KnownFlowReport::default()),
+            ..Report::default()
+        };
+        let json = report.json().unwrap();
+        assert!(json.ends_with(r#""test":{"absolute_error":0.0,"relative_error":0.0}}"#));
+    }
+
+    #[test]
+    fn a_number_that_is_not_finite_is_named() {
+        let mut report = Report {
+            bodies: vec![BodyReport::default()],
+            ..Report::default()
+        };
+        assert_eq!(report.not_finite(), None);
+        report.bodies[0].torque[1] = f64::NAN;
+        assert_eq!(report.not_finite().unwrap(), "bodies[0].torque");
+    }
+}

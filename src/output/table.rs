@@ -1,0 +1,191 @@
+//! The answer as a table for people.
+
+use super::{Discretization, KnownFlowReport, ProbeReport, Report};
+use crate::case::Case;
+use std::fmt::{self, Write};
+
+/// The report as aligned text; units are those of the case, made consistent by its viscosity.
+pub fn table(case: &Case, report: &Report) -> String {
+    let mut text = String::new();
+    // writing to a string does not fail
+    let _ = write_table(&mut text, case, report);
+    text
+}
+
+fn write_table(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
+    writeln!(
+        out,
+        "{}: viscosity {}, everything in the units of the case",
+        case.path.display(),
+        case.viscosity
+    )?;
+    write_error(out, case, report)?;
+    if let Some(test) = &report.test {
+        write_known_flow(out, test)?;
+    }
+    write_bodies(out, case, report)?;
+    if !report.probes.is_empty() {
+        write_probes(out, &report.probes)?;
+    }
+    write_discretization(out, &report.discretization)?;
+    let solve = match report.iterations {
+        0 => "direct solve".to_owned(),
+        n => format!("{n} iterations"),
+    };
+    writeln!(out, "{} unknowns, {solve}", report.unknowns)?;
+    let t = &report.timings;
+    writeln!(
+        out,
+        "seconds: assemble {:.3}, factor {:.3}, iterate {:.3}, evaluate {:.3}",
+        t.assemble, t.factor, t.iterate, t.evaluate
+    )
+}
+
+fn write_error(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
+    let estimate = report.error_estimate;
+    match case.tolerance() {
+        Some(tolerance) if estimate > tolerance => writeln!(
+            out,
+            "estimated error {estimate:.1e}, MISSES the tolerance {tolerance:e}"
+        ),
+        Some(tolerance) => writeln!(
+            out,
+            "estimated error {estimate:.1e}, within the tolerance {tolerance:e}"
+        ),
+        None => writeln!(
+            out,
+            "estimated error {estimate:.1e}, discretisation chosen by hand"
+        ),
+    }?;
+    writeln!(
+        out,
+        "  (velocities at probes: relative to the largest speed imposed; forces, torques and rigid velocities: to their largest)"
+    )
+}
+
+fn write_known_flow(out: &mut String, test: &KnownFlowReport) -> fmt::Result {
+    writeln!(
+        out,
+        "true error at the probes, against the known flow: {:.2e} absolute, {:.2e} relative",
+        test.absolute_error, test.relative_error
+    )
+}
+
+fn write_bodies(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
+    let widest = case.bodies.iter().map(|body| body.shape.chars().count());
+    let width = widest.max().unwrap_or(0).max("shape".len());
+    writeln!(
+        out,
+        "\nbodies; force and torque (about the centre) are exerted by the body on the fluid"
+    )?;
+    writeln!(
+        out,
+        "{:>6}  {:width$}  {:16}  {:>20}  {:>20}  {:>20}",
+        "body", "shape", "quantity", "x", "y", "z"
+    )?;
+    for (i, (body, answer)) in case.bodies.iter().zip(&report.bodies).enumerate() {
+        let rows = [
+            ("velocity", &answer.velocity),
+            ("angular velocity", &answer.angular_velocity),
+            ("force", &answer.force),
+            ("torque", &answer.torque),
+        ];
+        for (row, (quantity, vector)) in rows.into_iter().enumerate() {
+            let (number, shape) = match row {
+                0 => ((i + 1).to_string(), body.shape.as_str()),
+                _ => (String::new(), ""),
+            };
+            writeln!(
+                out,
+                "{number:>6}  {shape:width$}  {quantity:16}  {}",
+                numbers(vector)
+            )?;
+        }
+    }
+    Ok(())
+}
+
+fn write_probes(out: &mut String, probes: &[ProbeReport]) -> fmt::Result {
+    writeln!(
+        out,
+        "\nprobes; total velocity, pressure vanishing at infinity"
+    )?;
+    writeln!(
+        out,
+        "{:>6}  {:>10}  {:>10}  {:>10}  {:>20}  {:>20}  {:>20}  {:>20}",
+        "probe", "x", "y", "z", "velocity x", "velocity y", "velocity z", "pressure"
+    )?;
+    for (i, probe) in probes.iter().enumerate() {
+        let [x, y, z] = probe.point.map(|c| format!("{c:.4e}"));
+        writeln!(
+            out,
+            "{:>6}  {x:>10}  {y:>10}  {z:>10}  {}  {}",
+            i + 1,
+            numbers(&probe.velocity),
+            number(probe.pressure)
+        )?;
+    }
+    Ok(())
+}
+
+fn write_discretization(out: &mut String, shapes: &[Discretization]) -> fmt::Result {
+    let widest = shapes.iter().map(|d| d.shape.chars().count());
+    let width = widest.max().unwrap_or(0).max("shape".len());
+    writeln!(
+        out,
+        "\n  {:width$}  {:>6}  {:>5}  {:>5}",
+        "shape", "panels", "order", "modes"
+    )?;
+    for d in shapes {
+        writeln!(
+            out,
+            "  {:width$}  {:>6}  {:>5}  {:>5}",
+            d.shape, d.panels, d.order, d.modes
+        )?;
+    }
+    Ok(())
+}
+
+fn numbers(vector: &[f64; 3]) -> String {
+    vector.map(number).join("  ")
+}
+
+/// Thirteen digits with a signed exponent of at least two, right-aligned.
+fn number(x: f64) -> String {
+    let text = format!("{x:.12e}");
+    let text = match text.split_once('e').map(|(m, e)| (m, e.parse::<i32>())) {
+        Some((mantissa, Ok(exponent))) => format!("{mantissa}e{exponent:+03}"),
+        _ => text,
+    };
+    format!("{text:>20}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::BodyReport;
+
+    #[test]
+    fn columns_are_aligned() {
+        let text = "[shapes.ball]\nkind = 'sphere'\nradius = 1\n[[bodies]]\nshape = 'ball'";
+        let case = Case::parse(text, "ball.toml").unwrap();
+        let report = Report {
+            bodies: vec![BodyReport {
+                force: [-1.5e-300, 0.0, 18.849],
+                ..BodyReport::default()
+            }],
+            probes: vec![ProbeReport::default(); 2],
+            error_estimate: 2e-7,
+            ..Report::default()
+        };
+        let text = table(&case, &report);
+        assert!(text.contains("MISSES the tolerance 1e-8"));
+        let lines: Vec<&str> = text.lines().collect();
+        let header = lines.iter().position(|l| l.contains("quantity")).unwrap();
+        for line in &lines[header + 1..header + 5] {
+            assert_eq!(line.len(), lines[header].len(), "{line}");
+        }
+        let header = lines.iter().position(|l| l.contains("velocity x")).unwrap();
+        assert_eq!(lines[header].len(), lines[header + 1].len());
+    }
+}

@@ -1,0 +1,20 @@
+//! How a long computation tells where it is.
+
+/// Receives the progress of a computation; called from any thread.
+pub trait Progress: Sync {
+    /// A stage of the given number of steps begins; the stage before it has ended.
+    fn begin(&self, stage: &'static str, steps: usize);
+
+    /// This many more steps of the stage are done.
+    fn advance(&self, steps: usize);
+}
+
+/// Tells nobody.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Silent;
+
+impl Progress for Silent {
+    fn begin(&self, _stage: &'static str, _steps: usize) {}
+
+    fn advance(&self, _steps: usize) {}
+}

@@ -1,0 +1,257 @@
+//! The project's cases are read whole, and those of later issues refused by name; mutations never panic.
+
+use axistokes::case::{Accuracy, Background, Case, Motion, ShapeSpec, Slip, Steps};
+use proptest::prelude::*;
+use std::path::{Path, PathBuf};
+
+fn path(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/data/cases")
+        .join(name)
+}
+
+fn read(name: &str) -> Case {
+    Case::read(path(name)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn every_case_is_read() {
+    let mut cases = 0;
+    for entry in std::fs::read_dir(path("")).unwrap() {
+        let path = entry.unwrap().path();
+        if let Err(error) = Case::read(&path) {
+            panic!("{error}");
+        }
+        cases += 1;
+    }
+    assert_eq!(cases, 11);
+}
+
+#[test]
+fn cases_of_one_body_are_supported() {
+    for name in [
+        "sphere-drag",
+        "oblique-spheroid",
+        "thesis-single-body",
+        "torus-spin",
+    ] {
+        let case = read(&format!("{name}.toml"));
+        assert_eq!(case.check_supported(), Ok(()), "{name}");
+    }
+}
+
+#[test]
+fn cases_of_later_issues_are_refused_by_name() {
+    let free = "force and torque imposed on a free body";
+    for (name, words) in [
+        ("capsule", &[free][..]),
+        ("eight-sinking", &["more than one body (8 given)", free]),
+        ("held-and-free", &["more than one body (2 given)", free]),
+        ("jeffery", &["[background]", free]),
+        (
+            "sinking-pair",
+            &["[time]", "[output]", "more than one body (2 given)", free],
+        ),
+        ("squirmer", &[free, "slip"]),
+        ("two-spheres", &["more than one body (2 given)"]),
+    ] {
+        let error = read(&format!("{name}.toml")).check_supported().unwrap_err();
+        let expected = format!("not supported yet: {}", words.join(", "));
+        assert_eq!(error.message(), expected, "{name}");
+        assert!(error.line().is_some());
+    }
+}
+
+#[test]
+fn values_are_those_of_the_file() {
+    let case = read("oblique-spheroid.toml");
+    assert_eq!(case.viscosity, 2.5);
+    assert_eq!(case.tolerance(), Some(1e-9));
+    let body = &case.bodies[0];
+    let rod = ShapeSpec::Spheroid {
+        polar: 1.0,
+        equatorial: 0.5,
+    };
+    assert_eq!(case.shape_of(body).value, rod);
+    assert!(
+        body.axis
+            .iter()
+            .all(|x| (x - 1.0 / 3.0_f64.sqrt()).abs() < 1e-15)
+    );
+    let motion = Motion::Rigid {
+        velocity: [0.0, 0.0, 1.0],
+        angular_velocity: [0.3, 0.0, -0.2],
+    };
+    assert_eq!((body.motion.value, body.motion.line), (motion, 14));
+    assert_eq!(
+        (case.probes[1].value, case.probes[1].line),
+        ([1.0, -2.0, 2.5], 21)
+    );
+
+    let case = read("thesis-single-body.toml");
+    let by_hand = Accuracy::ByHand {
+        panels: 8,
+        order: 16,
+        modes: 60,
+    };
+    assert_eq!(case.accuracy, by_hand);
+    let test = case.test.unwrap();
+    assert_eq!(test.stokeslets.len(), 5);
+    assert_eq!(test.stokeslets[4].force[2], -2.015177655919);
+    assert_eq!(test.stokeslets[4].line, 23);
+}
+
+#[test]
+fn sections_of_later_issues_are_typed() {
+    let jeffery = read("jeffery.toml").background.unwrap().value;
+    assert!(matches!(jeffery, Background::Shear { rate: 1.0, .. }));
+    let pair = read("sinking-pair.toml");
+    assert_eq!(pair.time.unwrap().steps, Steps::Adaptive(1e-6));
+    assert!(pair.output.unwrap().vtk);
+    let squirmer = read("squirmer.toml").bodies.remove(0).slip.unwrap().value;
+    assert_eq!(squirmer, Slip::Squirmer { b: vec![1.5, 3.0] });
+}
+
+#[test]
+fn defaults_are_documented_ones() {
+    let text = "shapes.a = { kind = 'sphere', radius = 1 }\nshapes.b = { kind = 'biconcave', radius = 2 }\nbodies = [{ shape = 'a' }]";
+    let case = Case::parse(text, "default.toml").unwrap();
+    assert_eq!(case.accuracy, Accuracy::Tolerance(1e-8));
+    assert_eq!(case.viscosity, 1.0);
+    assert_eq!(case.bodies[0].axis, [0.0, 0.0, 1.0]);
+    assert_eq!(case.shapes["b"].line, 2);
+    let held = Motion::Rigid {
+        velocity: [0.0; 3],
+        angular_velocity: [0.0; 3],
+    };
+    assert_eq!(case.bodies[0].motion.value, held);
+    assert_eq!(case.check_supported(), Ok(()));
+}
+
+#[test]
+fn line_ends_of_other_systems_are_read() {
+    let text =
+        "\u{feff}[shapes.a]\r\nkind = 'sphere'\r\nradius = 1\r\n[[bodies]]\r\nshape = 'a'\r\n";
+    let case = Case::parse(text, "windows.toml").unwrap();
+    assert_eq!(case.bodies[0].line, 4);
+}
+
+#[test]
+fn a_profile_lies_beside_its_case() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("profile-beside-case");
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("curve.csv"), "0,1\n1,0\n0,-1\n").unwrap();
+    let text = "[shapes.a]\nkind = 'profile'\nfile = 'curve.csv'\n[[bodies]]\nshape = 'a'";
+    let case = Case::parse(text, folder.join("case.toml")).unwrap();
+    let file = folder.join("curve.csv");
+    assert_eq!(case.shapes["a"].value, ShapeSpec::Profile { file });
+}
+
+/// A case with every section of the format.
+const WHOLE: &str = "\
+viscosity = 1.5
+shapes.a = { kind = \"polar\", coefficients = [1.0, 0.0, 0.5] }
+shapes.c = { kind = \"capsule\", radius = 1, length = 2 }
+shapes.t = { kind = \"torus\", major = 1, minor = 0.25 }
+[[bodies]]
+shape = \"a\"
+center = [0.0, 1e3, -0.5]
+axis = [0.0, 0.0, 1.0]
+force = [0.0, 0.0, 1.0]
+[background]
+kind = \"linear\"
+gradient = [[1, 0, 0], [0, -1, 0], [0, 0, 0]]
+[accuracy]
+panels = 8
+order = 16
+modes = 40
+[solver]
+formulation = \"single-layer\"
+method = \"bicgstab\"
+tolerance = 1e-10
+max_iterations = 200
+[probes]
+points = [[0.0, 0.0, 3.0]]
+[test]
+stokeslets = [ { at = [0.0, 0.1, 0.2], force = [1.0, 0.0, 0.0] } ]
+[time]
+end = 10.0
+step = 0.01
+[output]
+directory = \"out\"
+vtk = true
+";
+
+#[test]
+fn the_whole_format_is_read() {
+    Case::parse(WHOLE, "whole.toml").unwrap();
+}
+
+/// Whatever the text, the outcome is a case or one line.
+fn check_outcome(text: &str) -> Result<(), TestCaseError> {
+    match Case::parse(text, "mutated.toml") {
+        Ok(case) => {
+            let _ = case.check_supported();
+        }
+        Err(error) => {
+            let line = error.to_string();
+            prop_assert!(line.starts_with("mutated.toml:"), "{}", line);
+            prop_assert!(!line.contains('\n'), "{}", line);
+            prop_assert!(
+                error
+                    .line()
+                    .is_none_or(|n| n <= text.lines().count().max(1) + 1)
+            );
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn mutated_characters_never_panic(
+        edits in prop::collection::vec((0..WHOLE.len(), 0..3_usize, any::<char>()), 1..6),
+    ) {
+        let mut text: Vec<char> = WHOLE.chars().collect();
+        for (at, action, c) in edits {
+            let at = at.min(text.len() - 1);
+            match action {
+                0 => text[at] = c,
+                1 => text.insert(at, c),
+                _ => { text.remove(at); }
+            }
+        }
+        check_outcome(&text.into_iter().collect::<String>())?;
+    }
+
+    #[test]
+    fn shuffled_pieces_never_panic(
+        edits in prop::collection::vec((0..30_usize, 0..30_usize, 0..4_usize), 1..6),
+        word in "[-+]?(nan|inf|[0-9]{1,3}(e[0-9]{1,4})?|true|\"\"|\\[\\[?|\\{|\\}|\\]|=|\\.|#|'''|a)",
+    ) {
+        let mut lines: Vec<String> = WHOLE.lines().map(str::to_owned).collect();
+        for (a, b, action) in edits {
+            let (a, b) = (a % lines.len(), b % lines.len());
+            match action {
+                0 => lines.swap(a, b),
+                1 => { let line = lines[b].clone(); lines.insert(a, line); }
+                2 => { lines[a] = match lines[a].split_once('=') {
+                    Some((key, _)) => format!("{key} = {word}"),
+                    None => word.clone(),
+                }; }
+                _ => { lines.remove(a); }
+            }
+            if lines.is_empty() {
+                lines.push(String::new());
+            }
+        }
+        check_outcome(&lines.join("\n"))?;
+    }
+
+    #[test]
+    fn any_text_never_panics(text in "\\PC{0,200}") {
+        check_outcome(&text)?;
+    }
+}

@@ -3,7 +3,27 @@
 //! A curve is traversed so that `(-dz/ds, dr/ds)` points out of the body: from the upper pole (`z > 0`)
 //! to the lower one, or clockwise in the `(r, z)` plane's outside sense for a closed loop off the axis.
 
+mod capsule;
+#[cfg(test)]
+mod checks;
+mod chord;
+mod error;
+mod legendre;
+mod measures;
+mod panels;
+mod resolution;
+mod spheroid;
+mod torus;
+
 use std::fmt::Debug;
+
+pub use capsule::Capsule;
+pub use chord::chord_by_quadrature;
+pub use error::{CurveError, LARGEST_ASPECT, LONGEST, SHORTEST};
+pub use measures::{arc_length, surface_area, volume};
+pub use panels::{MOST_PANELS, Panel, Panels};
+pub use spheroid::Spheroid;
+pub use torus::Torus;
 
 /// A point, or a vector, of the meridian half plane; lengths in the units of the case.
 #[derive(Clone, Copy, Debug, PartialEq)]

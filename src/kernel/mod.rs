@@ -23,6 +23,7 @@
 //! for well-separated pairs from one FFT per four entries ([`fourier`]).
 
 mod combined;
+mod direct;
 mod double_layer;
 mod fourier;
 mod modes;
@@ -34,6 +35,8 @@ mod single_layer;
 mod tests;
 mod traction;
 
+pub use direct::FlowAt;
+pub(crate) use direct::SurfacePoints;
 pub(crate) use combined::CombinedField;
 pub(crate) use double_layer::DoubleLayer;
 pub(crate) use modes::{Kernel, Modes, SourceRings, TargetRing, Workspace};

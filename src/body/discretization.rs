@@ -1,0 +1,130 @@
+//! Panels and quadrature nodes on a generating curve.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use panel_quadrature::{PanelBasis, QuadratureError};
+
+use crate::curve::{GeneratingCurve, Panel, Panels};
+
+/// Gauss–Legendre nodes of the panels of a generating curve, node after node along the curve.
+#[derive(Clone, Debug)]
+pub struct Discretization {
+    curve: Arc<dyn GeneratingCurve>,
+    panels: Panels,
+    basis: Arc<PanelBasis>,
+    nodes: Vec<Node>,
+    arc_lengths: Vec<f64>,
+}
+
+/// A point of a generating curve with its geometry.
+#[derive(Clone, Copy, Debug)]
+pub struct Node {
+    /// Curve parameter.
+    pub s: f64,
+    /// Distance from the axis.
+    pub r: f64,
+    /// Height along the axis.
+    pub z: f64,
+    /// Outward unit normal, radial and axial component.
+    pub normal: [f64; 2],
+    /// Quadrature weight per unit azimuth, $w\, r\, \lvert d\gamma/ds\rvert$: the surface element is this times $d\theta$.
+    pub weight: f64,
+}
+
+impl Node {
+    /// The node at parameter `s` with quadrature weight `ds`.
+    pub(crate) fn new(curve: &dyn GeneratingCurve, s: f64, ds: f64) -> Self {
+        let (point, tangent) = (curve.point(s), curve.tangent(s));
+        let speed = tangent.r.hypot(tangent.z);
+        Self {
+            s,
+            r: point.r,
+            z: point.z,
+            normal: [-tangent.z / speed, tangent.r / speed],
+            weight: ds * speed * point.r,
+        }
+    }
+}
+
+impl Discretization {
+    /// `order` nodes on each of the panels.
+    ///
+    /// # Errors
+    /// If there is no Gauss–Legendre rule of that order.
+    pub fn new(
+        curve: Arc<dyn GeneratingCurve>,
+        panels: Panels,
+        order: usize,
+    ) -> Result<Self, QuadratureError> {
+        let basis = Arc::new(PanelBasis::new(order)?);
+        let mut nodes = Vec::with_capacity(panels.len() * order);
+        let mut arc_lengths = Vec::with_capacity(panels.len());
+        for panel in panels.iter() {
+            let half = 0.5 * panel.length();
+            let on_panel = basis.nodes().iter().zip(basis.weights());
+            nodes.extend(on_panel.map(|(&t, w)| Node::new(&*curve, panel.at(t), half * w)));
+            let last = &nodes[nodes.len() - order..];
+            arc_lengths.push(last.iter().map(|node| node.weight / node.r).sum());
+        }
+        Ok(Self { curve, panels, basis, nodes, arc_lengths })
+    }
+
+    /// The generating curve.
+    pub fn curve(&self) -> &Arc<dyn GeneratingCurve> {
+        &self.curve
+    }
+
+    /// The panels, in order along the curve.
+    pub fn panels(&self) -> &Panels {
+        &self.panels
+    }
+
+    /// Nodes per panel.
+    pub fn order(&self) -> usize {
+        self.basis.order()
+    }
+
+    /// Interpolation on a panel's nodes.
+    pub fn basis(&self) -> &PanelBasis {
+        &self.basis
+    }
+
+    /// All nodes, panel after panel.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// The nodes of one panel.
+    pub fn nodes_of(&self, panel: usize) -> &[Node] {
+        &self.nodes[panel * self.order()..][..self.order()]
+    }
+
+    pub(crate) fn panel(&self, panel: usize) -> &Panel {
+        &self.panels.as_slice()[panel]
+    }
+
+    /// Arc length of a panel.
+    pub fn arc_length(&self, panel: usize) -> f64 {
+        self.arc_lengths[panel]
+    }
+
+    /// Area of the surface.
+    pub fn area(&self) -> f64 {
+        2.0 * PI * self.nodes.iter().map(|node| node.weight).sum::<f64>()
+    }
+
+    /// Half the largest extent of the body: the length that errors are measured in.
+    pub fn size(&self) -> f64 {
+        let far = |node: &Node| node.r.hypot(node.z);
+        self.nodes.iter().map(far).fold(0.0, f64::max)
+    }
+
+    /// The same panels with another number of nodes on each.
+    ///
+    /// # Errors
+    /// If there is no Gauss–Legendre rule of that order.
+    pub fn with_order(&self, order: usize) -> Result<Self, QuadratureError> {
+        Self::new(self.curve.clone(), self.panels.clone(), order)
+    }
+}

@@ -1,0 +1,132 @@
+//! Factors of the modal matrices: they belong to the shape, and serve every body of that shape and every right-hand side.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::lu::partial_pivoting::{factor, solve};
+use faer::perm::PermRef;
+use faer::{Mat, MatMut, MatRef, Par};
+use rayon::prelude::*;
+
+use super::discretization::Discretization;
+use super::matrix::ModalMatrices;
+use super::surface::SurfaceModes;
+
+/// LU factors of every mode's matrix.
+#[derive(Clone, Debug)]
+pub struct ModalFactors {
+    modes: Vec<Lu>,
+    /// Square roots of the quadrature weights, node after node.
+    root_weights: Vec<f64>,
+}
+
+/// Both factors of one matrix, in its place, and the permutation of its rows.
+#[derive(Clone, Debug)]
+struct Lu {
+    packed: Mat<f64>,
+    forward: Vec<usize>,
+    backward: Vec<usize>,
+}
+
+impl Lu {
+    fn new(matrix: MatRef<'_, f64>) -> Self {
+        let n = matrix.nrows();
+        let mut lu = Self { packed: matrix.to_owned(), forward: vec![0; n], backward: vec![0; n] };
+        let scratch = factor::lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Default::default());
+        factor::lu_in_place(
+            lu.packed.as_mut(),
+            &mut lu.forward,
+            &mut lu.backward,
+            Par::Seq,
+            MemStack::new(&mut MemBuffer::new(scratch)),
+            Default::default(),
+        );
+        lu
+    }
+
+    /// Solves with the transpose of the matrix that was factored.
+    fn solve_transpose(&self, columns: MatMut<'_, f64>) {
+        let n = self.packed.nrows();
+        let scratch = solve::solve_transpose_in_place_scratch::<usize, f64>(n, columns.ncols(), Par::Seq);
+        solve::solve_transpose_in_place(
+            self.packed.as_ref(),
+            self.packed.as_ref(),
+            PermRef::new_checked(&self.forward, &self.backward, n),
+            columns,
+            Par::Seq,
+            MemStack::new(&mut MemBuffer::new(scratch)),
+        );
+    }
+}
+
+impl ModalFactors {
+    /// Factors the matrices, one mode per task; `done` is called after each.
+    pub(crate) fn new(
+        matrices: &ModalMatrices,
+        discretization: &Discretization,
+        done: &(dyn Fn() + Sync),
+    ) -> Self {
+        let modes = (0..matrices.modes())
+            .into_par_iter()
+            .map(|n| {
+                let lu = Lu::new(matrices.transposed(n));
+                done();
+                lu
+            })
+            .collect();
+        let root_weights = discretization.nodes().iter().map(|node| node.weight.sqrt()).collect();
+        Self { modes, root_weights }
+    }
+
+    /// Modes, counting the zeroth.
+    pub fn count(&self) -> usize {
+        self.modes.len()
+    }
+
+    /// The density whose potential has the boundary values `data`; modes of `data` beyond the factors' are left out.
+    pub fn solve(&self, data: &SurfaceModes) -> SurfaceModes {
+        let nodes = data.nodes();
+        let mut density = SurfaceModes::zero(self.count() - 1, nodes);
+        for n in 0..self.count().min(data.modes()) {
+            density.families_mut(n).copy_from_slice(data.families(n));
+        }
+        for n in 0..self.count().min(data.modes()) {
+            let columns = density.families_mut(n);
+            if columns.iter().all(|&x| x == 0.0) {
+                continue;
+            }
+            self.scale(columns, |x, root| x * root);
+            // The factors are the transposed matrix's.
+            self.modes[n].solve_transpose(MatMut::from_column_major_slice_mut(columns, 3 * nodes, 2));
+            self.scale(columns, |x, root| x / root);
+        }
+        density
+    }
+
+    fn scale(&self, columns: &mut [f64], by: impl Fn(f64, f64) -> f64) {
+        for component in columns.chunks_mut(self.root_weights.len()) {
+            for (x, &root) in component.iter_mut().zip(&self.root_weights) {
+                *x = by(*x, root);
+            }
+        }
+    }
+}
+
+/// The potential of a density at the nodes: the matrices times its modes.
+pub fn apply(matrices: &ModalMatrices, discretization: &Discretization, density: &SurfaceModes) -> SurfaceModes {
+    let nodes = density.nodes();
+    let mut values = SurfaceModes::zero(matrices.modes() - 1, nodes);
+    let roots: Vec<f64> = discretization.nodes().iter().map(|node| node.weight.sqrt()).collect();
+    for n in 0..matrices.modes().min(density.modes()) {
+        let mut scaled = density.families(n).to_vec();
+        for component in scaled.chunks_mut(nodes) {
+            component.iter_mut().zip(&roots).for_each(|(x, root)| *x *= root);
+        }
+        let product = matrices.transposed(n).transpose()
+            * MatRef::from_column_major_slice(&scaled, 3 * nodes, 2);
+        for (family, column) in values.families_mut(n).chunks_mut(3 * nodes).enumerate() {
+            for (k, x) in column.iter_mut().enumerate() {
+                *x = product[(k, family)] / roots[k % nodes];
+            }
+        }
+    }
+    values
+}

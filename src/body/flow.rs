@@ -1,0 +1,216 @@
+//! Velocity and pressure away from the body.
+//!
+//! The density is resampled finely enough for each target, then summed directly: with the trapezoidal rule in the
+//! azimuth and Gauss–Legendre panels along the curve both converge exponentially in the number of points per distance.
+//! A target that the finest resampling does not resolve is refused.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use nalgebra::{Point3, Vector3};
+use num_complex::Complex64;
+use panel_quadrature::QuadratureError;
+use rustfft::{Fft, FftPlanner};
+
+use super::discretization::{Discretization, Node};
+use super::near::bernstein;
+use super::surface::{SurfaceModes, azimuths};
+use crate::kernel::{FlowAt, SurfacePoints};
+
+/// The flow of a density on a body: $u = D[\sigma] + \eta S[\sigma]$ for viscosity 1, in the body's frame.
+#[derive(Clone, Debug)]
+pub struct Flow<'a> {
+    discretization: &'a Discretization,
+    density: &'a SurfaceModes,
+    eta: f64,
+    /// Logarithm of each mode's largest coefficient relative to the largest of all.
+    decay: Vec<f64>,
+}
+
+/// Why a flow cannot be evaluated.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FlowError {
+    /// A target is too near to the surface.
+    #[error(
+        "the point ({}, {}, {}) is too near to the surface for a tolerance of {tolerance:e}: expected a distance of about {least:.2e} or more",
+        point.x, point.y, point.z
+    )]
+    TooNear {
+        /// Its place among the targets.
+        index: usize,
+        /// The point, in the body's frame.
+        point: Point3<f64>,
+        /// The tolerance it was asked with.
+        tolerance: f64,
+        /// About the least distance that would do there.
+        least: f64,
+    },
+    /// A target has a coordinate that is not finite.
+    #[error("target {index} has a coordinate that is not finite")]
+    NotFinite {
+        /// Its place among the targets.
+        index: usize,
+    },
+    /// A quadrature rule is missing.
+    #[error(transparent)]
+    Quadrature(#[from] QuadratureError),
+}
+
+/// Resamplings: number `l` cuts every panel into `2^l` and takes `2^l` times as many azimuths.
+const LEVELS: u32 = 4;
+
+impl<'a> Flow<'a> {
+    /// The flow of `density`, with weight `eta` (1/length) of its single layer.
+    pub fn new(discretization: &'a Discretization, density: &'a SurfaceModes, eta: f64) -> Self {
+        let amplitudes: Vec<f64> = (0..density.modes()).map(|n| density.amplitude(n)).collect();
+        let largest = amplitudes.iter().fold(f64::MIN_POSITIVE, |a, &b| a.max(b));
+        let decay = amplitudes.iter().map(|a| (a / largest).max(1e-300).ln()).collect();
+        Self { discretization, density, eta, decay }
+    }
+
+    /// Velocity and pressure at every target, with an error of the quadrature below `tolerance` relative to the density.
+    ///
+    /// # Errors
+    /// [`FlowError::TooNear`] for a target that the finest resampling does not resolve.
+    pub fn at(&self, targets: &[Point3<f64>], tolerance: f64) -> Result<Vec<FlowAt>, FlowError> {
+        let mut by_level: Vec<Vec<usize>> = vec![Vec::new(); LEVELS as usize];
+        for (index, point) in targets.iter().enumerate() {
+            if !point.iter().all(|x| x.is_finite()) {
+                return Err(FlowError::NotFinite { index });
+            }
+            let level = (0..LEVELS).find(|&l| self.resolves(l, point, tolerance));
+            let Some(level) = level else {
+                return Err(FlowError::TooNear {
+                    index,
+                    point: *point,
+                    tolerance,
+                    least: self.least_distance(tolerance),
+                });
+            };
+            by_level[level as usize].push(index);
+        }
+        let nothing = FlowAt { velocity: Vector3::zeros(), pressure: 0.0 };
+        let mut flow = vec![nothing; targets.len()];
+        for (level, indices) in by_level.into_iter().enumerate() {
+            if indices.is_empty() {
+                continue;
+            }
+            let points = self.resample(level as u32)?;
+            let some: Vec<_> = indices.iter().map(|&i| targets[i]).collect();
+            for (i, at) in indices.into_iter().zip(points.flow(self.eta, &some)) {
+                flow[i] = at;
+            }
+        }
+        Ok(flow)
+    }
+
+    fn azimuths(&self, level: u32) -> usize {
+        azimuths(self.density.modes().max(16)) << level
+    }
+
+    /// Whether both rules of a level are good to the tolerance at a target.
+    fn resolves(&self, level: u32, target: &Point3<f64>, tolerance: f64) -> bool {
+        let digits = -tolerance.ln() + 2.0;
+        let order = self.discretization.order();
+        let far = (digits / (2 * order) as f64).exp();
+        let (r, z) = (target.x.hypot(target.y), target.z);
+        let count = self.azimuths(level) as f64;
+        let parts = 1usize << level;
+        (0..self.discretization.panels().len()).all(|panel| {
+            let around = self.discretization.nodes_of(panel).iter().all(|node| {
+                let h = ((r - node.r).powi(2) + (z - node.z).powi(2)) / (2.0 * r * node.r);
+                let xi = 2.0 * (0.5 * h).sqrt().asinh();
+                // Mode m of the density meets mode count - m of the kernel.
+                (self.decay.iter().enumerate())
+                    .all(|(m, decay)| decay - (count - m as f64) * xi <= -digits)
+            });
+            let whole = self.discretization.panel(panel);
+            let length = self.discretization.arc_length(panel) / parts as f64;
+            let end = |k: usize| {
+                let s = whole.start + whole.length() * k as f64 / parts as f64;
+                let point = self.discretization.curve().point(s);
+                [point.r, point.z]
+            };
+            around && (0..parts).all(|k| bernstein([r, z], [end(k), end(k + 1)], length) >= far)
+        })
+    }
+
+    /// About the distance from the surface at which the finest resampling starts to resolve.
+    fn least_distance(&self, tolerance: f64) -> f64 {
+        let digits = -tolerance.ln() + 2.0;
+        let finest = LEVELS - 1;
+        let order = self.discretization.order();
+        let far = (digits / (2 * order) as f64).exp();
+        let panels = 0..self.discretization.panels().len();
+        let longest = panels.map(|p| self.discretization.arc_length(p)).fold(0.0, f64::max);
+        let along = 0.25 * (far - 1.0 / far) * longest / f64::from(1u32 << finest);
+        let widest = self.discretization.nodes().iter().map(|n| n.r).fold(0.0, f64::max);
+        let around = widest * digits / self.azimuths(finest) as f64;
+        along.max(around)
+    }
+
+    /// The density on the points of a level.
+    fn resample(&self, level: u32) -> Result<SurfacePoints, QuadratureError> {
+        let discretization = self.discretization;
+        let basis = discretization.basis();
+        let order = discretization.order();
+        let parts = 1usize << level;
+        let count = self.azimuths(level);
+        let fft: Arc<dyn Fft<f64>> = FftPlanner::new().plan_fft_inverse(count);
+        let mut ring = vec![Complex64::default(); count];
+        let mut components = vec![[0.0; 3]; count];
+        let mut row = vec![0.0; order];
+        let panels = discretization.panels().len();
+        let mut points = SurfacePoints::with_capacity(panels * order * parts * count);
+        let rotation: Vec<(f64, f64)> =
+            (0..count).map(|l| (2.0 * PI * l as f64 / count as f64).sin_cos()).collect();
+        for panel in 0..panels {
+            let whole = *discretization.panel(panel);
+            for part in 0..parts {
+                for (&x, &w) in basis.nodes().iter().zip(basis.weights()) {
+                    let t = (2 * part + 1) as f64 / parts as f64 - 1.0 + x / parts as f64;
+                    basis.interpolation_row(t, &mut row)?;
+                    let ds = 0.5 * whole.length() * w / parts as f64;
+                    let node = Node::new(&**discretization.curve(), whole.at(t), ds);
+                    for j in 0..3 {
+                        self.spectrum(panel * order, &row, j, &mut ring);
+                        fft.process(&mut ring);
+                        for (components, value) in components.iter_mut().zip(&ring) {
+                            components[j] = value.re;
+                        }
+                    }
+                    let area = node.weight * 2.0 * PI / count as f64;
+                    for (&(sin, cos), &[radial, azimuthal, axial]) in rotation.iter().zip(&components) {
+                        let [nu_r, nu_z] = node.normal;
+                        points.push(
+                            Vector3::new(node.r * cos, node.r * sin, node.z),
+                            Vector3::new(nu_r * cos, nu_r * sin, nu_z),
+                            area * Vector3::new(
+                                radial * cos - azimuthal * sin,
+                                radial * sin + azimuthal * cos,
+                                axial,
+                            ),
+                        );
+                    }
+                }
+            }
+        }
+        points.pad();
+        Ok(points)
+    }
+
+    /// The complex spectrum of component `j`, interpolated with `row` on the panel whose first node is `first`; its inverse
+    /// transform has the component as real part.
+    fn spectrum(&self, first: usize, row: &[f64], j: usize, ring: &mut [Complex64]) {
+        ring.fill(Complex64::default());
+        let interpolate = |n: usize, family: usize| -> f64 {
+            let values = &self.density.component(n, family, j)[first..][..row.len()];
+            values.iter().zip(row).map(|(x, l)| x * l).sum()
+        };
+        for (n, ring) in ring.iter_mut().enumerate().take(self.density.modes()) {
+            let (first, second) = (interpolate(n, 0), interpolate(n, 1));
+            // Re((c - i s) e^{i n theta}) = c cos + s sin.
+            *ring = if j == 1 { Complex64::new(-second, -first) } else { Complex64::new(first, -second) };
+        }
+    }
+}

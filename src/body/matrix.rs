@@ -1,0 +1,204 @@
+//! Modal Nyström matrices of a layer potential on a surface.
+//!
+//! A real field is the sum over modes $n$ of two families, $(\alpha \cos n\theta, \beta \sin n\theta, \gamma \cos n\theta)$ and
+//! $(\alpha \sin n\theta, -\beta \cos n\theta, \gamma \sin n\theta)$ in the cylindrical components; the second is the first turned about the axis.
+//! A rotationally invariant operator maps each family to itself by the same real matrix: with the kernel's modes $K_{ij}(n)$
+//!
+//! $$ \begin{pmatrix} K_{rr} & -K_{r\theta} & K_{rz} \\\\ K_{\theta r} & K_{\theta\theta} & K_{\theta z} \\\\ K_{zr} & -K_{z\theta} & K_{zz} \end{pmatrix} . $$
+//!
+//! Only $n \ge 0$ is needed, in real arithmetic. Rows and columns carry the square roots of the quadrature weights,
+//! $\sqrt{w_i} K_{ij} \sqrt{w_j}$, so that the matrix acts on $L^2$ of the surface and its condition number is the operator's.
+
+use faer::linalg::matmul::matmul;
+use faer::{Accum, MatMut, MatRef, Par};
+use panel_quadrature::QuadratureError;
+use rayon::prelude::*;
+
+use super::discretization::{Discretization, Node};
+use super::near::{NearNodes, NearRules};
+use crate::kernel::{Kernel, Modes, SourceRings, TargetRing, Workspace};
+
+/// The matrices of modes $0 \dots n_\text{max}$, transposed.
+///
+/// Unknown $j N + k$ is component $j$ (radial, azimuthal, axial) at node $k$ of $N$.
+#[derive(Debug)]
+pub struct ModalMatrices {
+    modes: usize,
+    unknowns: usize,
+    /// Row `i N + k` of mode `n` starts at `((i N + k) modes + n) unknowns`.
+    rows: Vec<f64>,
+}
+
+/// The sign with which entry $3 i + j$ of a kernel enters the matrix of the first family.
+const SIGN: [f64; 9] = [1.0, -1.0, 1.0, 1.0, 1.0, 1.0, 1.0, -1.0, 1.0];
+
+/// A thread's buffers.
+#[derive(Default)]
+struct Buffers {
+    near: NearNodes,
+    sources: SourceRings,
+    columns: Vec<usize>,
+    workspace: Workspace,
+    interpolated: Vec<f64>,
+    weighted: Vec<f64>,
+}
+
+impl ModalMatrices {
+    /// The matrices of `identity` plus the layer potential of `kernel` (principal value), for modes up to `n_max`;
+    /// `done` is called after each target node.
+    pub(crate) fn assemble(
+        discretization: &Discretization,
+        kernel: &impl Kernel<9>,
+        identity: f64,
+        n_max: usize,
+        done: &(dyn Fn() + Sync),
+    ) -> Result<Self, QuadratureError> {
+        let nodes = discretization.nodes().len();
+        let (modes, unknowns) = (n_max + 1, 3 * nodes);
+        let mut rows = vec![0.0; unknowns * modes * unknowns];
+        let engine = Modes::new(n_max);
+        let rules = NearRules::new(discretization.order())?;
+        let row_length = modes * unknowns;
+        let (radial, others) = rows.split_at_mut(nodes * row_length);
+        let (azimuthal, axial) = others.split_at_mut(nodes * row_length);
+        radial
+            .par_chunks_mut(row_length)
+            .zip(azimuthal.par_chunks_mut(row_length))
+            .zip(axial.par_chunks_mut(row_length))
+            .enumerate()
+            .try_for_each_init(Buffers::default, |buffers, (target, ((radial, azimuthal), axial))| {
+                let mut rows = [radial, azimuthal, axial];
+                buffers.fill_rows(discretization, kernel, &engine, &rules, target, &mut rows)?;
+                for (component, row) in rows.into_iter().enumerate() {
+                    for mode in row.chunks_mut(unknowns) {
+                        mode[component * nodes + target] += identity;
+                    }
+                }
+                done();
+                Ok(())
+            })?;
+        Ok(Self { modes, unknowns, rows })
+    }
+
+    /// Modes, counting the zeroth.
+    pub fn modes(&self) -> usize {
+        self.modes
+    }
+
+    /// Unknowns of each mode: three per node.
+    pub fn unknowns(&self) -> usize {
+        self.unknowns
+    }
+
+    /// The transposed matrix of mode `n`.
+    pub fn transposed(&self, n: usize) -> MatRef<'_, f64> {
+        let stride = self.modes * self.unknowns;
+        let first = n * self.unknowns;
+        let last = (self.unknowns - 1) * stride + first + self.unknowns;
+        MatRef::from_column_major_slice_with_stride(
+            &self.rows[first..last],
+            self.unknowns,
+            self.unknowns,
+            stride,
+        )
+    }
+}
+
+impl Buffers {
+    fn fill_rows(
+        &mut self,
+        discretization: &Discretization,
+        kernel: &impl Kernel<9>,
+        engine: &Modes,
+        rules: &NearRules,
+        index: usize,
+        rows: &mut [&mut [f64]; 3],
+    ) -> Result<(), QuadratureError> {
+        let order = discretization.order();
+        let nodes = discretization.nodes();
+        let (home, local) = (index / order, index % order);
+        let at = &nodes[index];
+        let target = TargetRing { r: at.r, normal: at.normal };
+        self.sources.clear();
+        self.columns.clear();
+        for panel in 0..discretization.panels().len() {
+            if panel != home && rules.is_far(discretization, at, panel) {
+                self.columns.extend(panel * order..(panel + 1) * order);
+            }
+        }
+        for &column in &self.columns {
+            let node = &nodes[column];
+            self.sources.push(node.r, [at.r - node.r, at.z - node.z], node.normal);
+        }
+        engine.evaluate(kernel, target, &self.sources, &mut self.workspace);
+        self.scatter_far(nodes, at, engine.count(), rows);
+        for panel in 0..discretization.panels().len() {
+            if panel == home || !rules.is_far(discretization, at, panel) {
+                rules.fill(discretization, home, local, panel, &mut self.near)?;
+                self.sources.clear();
+                for (node, &separation) in self.near.nodes.iter().zip(&self.near.separation) {
+                    self.sources.push(node.r, separation, node.normal);
+                }
+                engine.evaluate(kernel, target, &self.sources, &mut self.workspace);
+                self.interpolate_near(nodes, at, engine.count(), panel * order, order, rows);
+            }
+        }
+        Ok(())
+    }
+
+    fn scatter_far(&self, nodes: &[Node], at: &Node, modes: usize, rows: &mut [&mut [f64]; 3]) {
+        let Workspace { block, stride, order, .. } = &self.workspace;
+        for n in 0..modes {
+            for (k, sign) in SIGN.into_iter().enumerate() {
+                let entries = &block[(n * 9 + k) * stride..];
+                let row = &mut rows[k / 3][(3 * n + k % 3) * nodes.len()..][..nodes.len()];
+                for (&source, entry) in order.iter().zip(entries) {
+                    let column = self.columns[source];
+                    row[column] = sign * entry * (nodes[column].weight * at.weight).sqrt();
+                }
+            }
+        }
+    }
+
+    /// Maps the entries at the near nodes to the panel's own nodes `first..first + order`.
+    fn interpolate_near(
+        &mut self,
+        nodes: &[Node],
+        at: &Node,
+        modes: usize,
+        first: usize,
+        order: usize,
+        rows: &mut [&mut [f64]; 3],
+    ) {
+        let Workspace { block, stride, order: columns, .. } = &self.workspace;
+        let count = columns.len();
+        self.weighted.clear();
+        for &source in columns {
+            let weight = self.near.nodes[source].weight;
+            let interpolation = &self.near.interpolation[source * order..][..order];
+            self.weighted.extend(interpolation.iter().zip(&nodes[first..]).map(|(l, node)| {
+                l * weight * (at.weight / node.weight).sqrt()
+            }));
+        }
+        self.interpolated.resize(modes * 9 * order, 0.0);
+        // Column-major views: the transposes of what is meant, so that entries stay contiguous.
+        matmul(
+            MatMut::from_column_major_slice_mut(&mut self.interpolated, order, modes * 9),
+            Accum::Replace,
+            MatRef::from_column_major_slice(&self.weighted, order, count),
+            MatRef::from_column_major_slice_with_stride(block, *stride, modes * 9, *stride)
+                .subrows(0, count),
+            1.0,
+            Par::Seq,
+        );
+        for n in 0..modes {
+            for (k, sign) in SIGN.into_iter().enumerate() {
+                let from = &self.interpolated[(n * 9 + k) * order..][..order];
+                let to = &mut rows[k / 3][(3 * n + k % 3) * nodes.len() + first..][..order];
+                for (to, from) in to.iter_mut().zip(from) {
+                    *to = sign * from;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! One body: its modal matrices and their factors, boundary problems on it, and the flow around it.
+//!
+//! Everything here is in the body's own frame: symmetry axis `z`, centre at the origin of its generating curve.
+//!
+//! | module | what |
+//! |---|---|
+//! | [`discretization`] | panels and nodes on the generating curve |
+//! | [`near`] | which quadrature resolves a panel's action on a near target |
+//! | [`matrix`] | modal Nyström matrices |
+//! | [`surface`] | vector fields on the surface and their modes |
+//! | [`factors`] | factors of the modal matrices, which belong to the shape |
+//! | [`flow`] | velocity and pressure away from the body |
+//! | [`rigid`] | rigid motions, force and torque |
+
+pub mod discretization;
+pub mod factors;
+pub mod flow;
+pub mod matrix;
+mod near;
+pub mod rigid;
+pub mod surface;

@@ -1,0 +1,128 @@
+//! Vector fields on the surface and their azimuthal modes.
+//!
+//! A field is a sum over modes and the two families of [`matrix`](super::matrix); its components are cylindrical.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+use num_complex::Complex64;
+use rustfft::{Fft, FftPlanner};
+
+use super::discretization::Discretization;
+
+/// Modes of a real vector field at the nodes of a generating curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SurfaceModes {
+    modes: usize,
+    nodes: usize,
+    /// Component `j` at node `k` of family `f` of mode `n` is at `((2 n + f) 3 + j) nodes + k`.
+    values: Vec<f64>,
+}
+
+/// Samples around each ring that determine modes up to `n_max`, with room for a few beyond: a length the FFT is quick at.
+pub fn azimuths(n_max: usize) -> usize {
+    let least = 2 * n_max + 8;
+    (least..)
+        .find(|&n| {
+            let odd = n >> n.trailing_zeros();
+            n.is_multiple_of(2) && (odd == 1 || odd == 3 || odd == 5)
+        })
+        .unwrap_or(least)
+}
+
+impl SurfaceModes {
+    /// The field that vanishes.
+    pub fn zero(n_max: usize, nodes: usize) -> Self {
+        Self { modes: n_max + 1, nodes, values: vec![0.0; (n_max + 1) * 6 * nodes] }
+    }
+
+    /// The modes up to `n_max` of the field `f`, a vector in the body's frame at a point of its surface.
+    ///
+    /// Returns with them the largest coefficient of the modes just beyond `n_max`: what is left out.
+    pub fn sample(
+        discretization: &Discretization,
+        n_max: usize,
+        f: impl Fn(Vector3<f64>) -> Vector3<f64>,
+    ) -> (Self, f64) {
+        let nodes = discretization.nodes();
+        let count = azimuths(n_max);
+        let fft: Arc<dyn Fft<f64>> = FftPlanner::new().plan_fft_forward(count);
+        let mut modes = Self::zero(n_max, nodes.len());
+        let mut beyond = 0.0f64;
+        let mut rings = vec![vec![Complex64::default(); count]; 3];
+        for (k, node) in nodes.iter().enumerate() {
+            for l in 0..count {
+                let (sin, cos) = (2.0 * PI * l as f64 / count as f64).sin_cos();
+                let value = f(Vector3::new(node.r * cos, node.r * sin, node.z));
+                rings[0][l] = (value.x * cos + value.y * sin).into();
+                rings[1][l] = (value.y * cos - value.x * sin).into();
+                rings[2][l] = value.z.into();
+            }
+            for (j, ring) in rings.iter_mut().enumerate() {
+                fft.process(ring);
+                for (n, c) in ring.iter().enumerate().take(count / 2) {
+                    let scale = if n == 0 { 1.0 } else { 2.0 } / count as f64;
+                    let (cos, sin) = (scale * c.re, -scale * c.im);
+                    if n > n_max {
+                        beyond = beyond.max(cos.abs()).max(sin.abs());
+                    } else if j == 1 {
+                        modes.component_mut(n, 0, j)[k] = sin;
+                        modes.component_mut(n, 1, j)[k] = -cos;
+                    } else {
+                        modes.component_mut(n, 0, j)[k] = cos;
+                        modes.component_mut(n, 1, j)[k] = sin;
+                    }
+                }
+            }
+        }
+        (modes, beyond)
+    }
+
+    /// Modes, counting the zeroth.
+    pub fn modes(&self) -> usize {
+        self.modes
+    }
+
+    /// Nodes on the generating curve.
+    pub fn nodes(&self) -> usize {
+        self.nodes
+    }
+
+    /// Component `j` (radial, azimuthal, axial) of a family (0, 1) of mode `n`, node after node.
+    pub fn component(&self, n: usize, family: usize, j: usize) -> &[f64] {
+        &self.values[((2 * n + family) * 3 + j) * self.nodes..][..self.nodes]
+    }
+
+    /// The same, to be written.
+    pub fn component_mut(&mut self, n: usize, family: usize, j: usize) -> &mut [f64] {
+        &mut self.values[((2 * n + family) * 3 + j) * self.nodes..][..self.nodes]
+    }
+
+    /// Both families of mode `n`: the right-hand sides of that mode's system, one after the other.
+    pub(crate) fn families(&self, n: usize) -> &[f64] {
+        &self.values[6 * n * self.nodes..][..6 * self.nodes]
+    }
+
+    pub(crate) fn families_mut(&mut self, n: usize) -> &mut [f64] {
+        &mut self.values[6 * n * self.nodes..][..6 * self.nodes]
+    }
+
+    /// The field's cylindrical components at node `k` and azimuth `theta`.
+    pub fn at(&self, k: usize, theta: f64) -> [f64; 3] {
+        let mut value = [0.0; 3];
+        for n in 0..self.modes {
+            let (sin, cos) = (n as f64 * theta).sin_cos();
+            for (j, value) in value.iter_mut().enumerate() {
+                let (first, second) = (self.component(n, 0, j)[k], self.component(n, 1, j)[k]);
+                *value += if j == 1 { first * sin - second * cos } else { first * cos + second * sin };
+            }
+        }
+        value
+    }
+
+    /// The largest absolute value of a coefficient of mode `n`.
+    pub fn amplitude(&self, n: usize) -> f64 {
+        self.families(n).iter().fold(0.0, |most, x| most.max(x.abs()))
+    }
+}

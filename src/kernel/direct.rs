@@ -1,0 +1,110 @@
+//! Direct sums of Stokeslets and stresslets over points in space.
+
+use std::f64::consts::PI;
+
+use nalgebra::{Point3, Vector3};
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+
+use crate::special::lanes::{Lanes, PADDING};
+
+/// Points of a surface that carry a combined field, in structure-of-arrays form.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SurfacePoints {
+    position: [Vec<f64>; 3],
+    normal: [Vec<f64>; 3],
+    /// Density times the point's share of the area.
+    strength: [Vec<f64>; 3],
+}
+
+/// Velocity and pressure at a point, for viscosity 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlowAt {
+    /// Velocity.
+    pub velocity: Vector3<f64>,
+    /// Pressure, zero at infinity.
+    pub pressure: f64,
+}
+
+impl SurfacePoints {
+    pub fn with_capacity(count: usize) -> Self {
+        let buffers = || std::array::from_fn(|_| Vec::with_capacity(count + PADDING));
+        Self { position: buffers(), normal: buffers(), strength: buffers() }
+    }
+
+    pub fn push(&mut self, position: Vector3<f64>, normal: Vector3<f64>, strength: Vector3<f64>) {
+        for k in 0..3 {
+            self.position[k].push(position[k]);
+            self.normal[k].push(normal[k]);
+            self.strength[k].push(strength[k]);
+        }
+    }
+
+    /// Completes the last register with points far away from everything, of no strength.
+    pub fn pad(&mut self) {
+        while !self.position[0].len().is_multiple_of(PADDING) {
+            self.push(Vector3::repeat(1e100), Vector3::zeros(), Vector3::zeros());
+        }
+    }
+
+    /// $D[\sigma] + \eta S[\sigma]$ and its pressure at every target, the sum in the order of the points; parallel over targets.
+    pub fn flow(&self, eta: f64, targets: &[Point3<f64>]) -> Vec<FlowAt> {
+        targets
+            .par_iter()
+            .map(|&target| Arch::new().dispatch(Sum { points: self, eta, target }))
+            .collect()
+    }
+}
+
+struct Sum<'a> {
+    points: &'a SurfacePoints,
+    eta: f64,
+    target: Point3<f64>,
+}
+
+impl WithSimd for Sum<'_> {
+    type Output = FlowAt;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> FlowAt {
+        let Self { points, eta, target } = self;
+        let splat = |x| Lanes::splat(simd, x);
+        let target = [splat(target.x), splat(target.y), splat(target.z)];
+        let [x, y, z] = points.position.each_ref().map(|b| S::as_simd_f64s(b).0);
+        let [nx, ny, nz] = points.normal.each_ref().map(|b| S::as_simd_f64s(b).0);
+        let [fx, fy, fz] = points.strength.each_ref().map(|b| S::as_simd_f64s(b).0);
+        let mut velocity = [splat(0.0); 3];
+        let mut pressure = splat(0.0);
+        let one = splat(1.0);
+        // Common factor 1/(8 pi) left to the end.
+        let (six, eta, two_eta) = (splat(6.0), splat(eta), splat(2.0 * eta));
+        for i in 0..x.len() {
+            let at = |b: &[S::f64s]| Lanes(simd, b[i]);
+            let d = [target[0] - at(x), target[1] - at(y), target[2] - at(z)];
+            let f = [at(fx), at(fy), at(fz)];
+            let n = [at(nx), at(ny), at(nz)];
+            let dot = |a: &[Lanes<S>; 3], b: &[Lanes<S>; 3]| {
+                a[0].mul_add(b[0], a[1].mul_add(b[1], a[2] * b[2]))
+            };
+            let inv2 = one / dot(&d, &d);
+            let inv = inv2.sqrt();
+            let inv3 = inv * inv2;
+            let (df, dn, nf) = (dot(&d, &f), dot(&d, &n), dot(&n, &f));
+            // 6 (d.f)(d.n)/|d|^5 + eta (d.f)/|d|^3 along d, eta/|d| along f.
+            let stresslet = six * dn * inv2;
+            let along_d = df * inv3 * (stresslet + eta);
+            let along_f = eta * inv;
+            for k in 0..3 {
+                velocity[k] = velocity[k] + along_d.mul_add(d[k], along_f * f[k]);
+            }
+            // 4 (-n.f + 3 (d.f)(d.n)/|d|^2)/|d|^3 + 2 eta (d.f)/|d|^3.
+            let in_brackets = df.mul_add(2.0 * stresslet + two_eta, -4.0 * nf);
+            pressure = inv3.mul_add(in_brackets, pressure);
+        }
+        let factor = 1.0 / (8.0 * PI);
+        FlowAt {
+            velocity: Vector3::new(velocity[0].sum(), velocity[1].sum(), velocity[2].sum()) * factor,
+            pressure: pressure.sum() * factor,
+        }
+    }
+}

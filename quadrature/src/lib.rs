@@ -8,7 +8,7 @@
 //! | a logarithm at a node of the panel or of its neighbour | [`KolmRokhlin`] |
 //! | a logarithm at the end of an interval | [`LogEndpoint`] |
 //! | Legendre series at real and complex points | [`legendre`] |
-//! | integrals of `P_k(x) log|x - y|` | [`log_moments`](log_moments()) |
+//! | integrals of Legendre polynomials against a logarithm | [`log_moments`](log_moments()) |
 //! | the generator of the tables | [`generate`] |
 
 pub mod error;
@@ -35,3 +35,8 @@ pub use log_endpoint::LogEndpoint;
 pub use log_moments::log_moments;
 #[doc(inline)]
 pub use panel::PanelBasis;
+
+/// The examples of the README are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

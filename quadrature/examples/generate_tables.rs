@@ -1,15 +1,30 @@
 //! Makes the data files of the crate anew: `cargo run --release -p panel-quadrature --example generate_tables`.
+//!
+//! Takes two to four minutes. Names of files as arguments restrict it to those.
 
 use std::path::Path;
 
-use panel_quadrature::log_endpoint;
+use panel_quadrature::kolm_rokhlin::{self, Family};
+use panel_quadrature::{QuadratureError, log_endpoint};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let wanted: Vec<String> = std::env::args().skip(1).collect();
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
-    std::fs::write(
-        data.join("log_endpoint.txt"),
-        log_endpoint::generate_table()?,
-    )?;
-    println!("wrote {}", data.join("log_endpoint.txt").display());
+    let write = |name: &str, make: &dyn Fn() -> Result<String, QuadratureError>| {
+        if wanted.is_empty() || wanted.iter().any(|w| w == name) {
+            std::fs::write(data.join(name), make()?)?;
+            println!("wrote {name}");
+        }
+        Ok::<(), Box<dyn std::error::Error>>(())
+    };
+    write("log_endpoint.txt", &log_endpoint::generate_table)?;
+    for &order in kolm_rokhlin::ORDERS {
+        write(&format!("neighbour_{order}.txt"), &|| {
+            kolm_rokhlin::generate_table(Family::Neighbour, order)
+        })?;
+        write(&format!("own_{order}.txt"), &|| {
+            kolm_rokhlin::generate_table(Family::Own, order)
+        })?;
+    }
     Ok(())
 }

@@ -74,7 +74,7 @@ pub fn log_endpoint(nodes: usize) -> Result<Generated> {
 }
 
 fn target_node(order: usize, target: usize) -> Result<Dd> {
-    if order == 0 || 2 * order > MAX_NODES {
+    if order == 0 || order > MAX_NODES / 2 {
         let max = MAX_NODES / 2;
         return Err(QuadratureError::Order { order, max });
     }

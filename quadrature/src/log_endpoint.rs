@@ -118,8 +118,8 @@ mod tests {
             assert_eq!(rule.order(), order);
             let error = moment_error(&rule);
             println!(
-                "{order} nodes, first at {:e}: {error:.1e}",
-                rule.distances[0]
+                "log endpoint {order}: error {error:.1e}, nearest node {:.1e}, smallest weight {:.1e}",
+                rule.distances[0], rule.weights[0]
             );
             assert!(error < 2e-15, "{order}: {error:e}");
             assert!(rule.weights.iter().all(|w| *w > 0.0));

@@ -73,7 +73,7 @@ impl PanelBasis {
         check_length("the interpolation row", row.len(), self.order())?;
         check_finite("the interpolation point", t)?;
         if t.abs() > 1.0 {
-            self.extrapolate(t, row);
+            self.extrapolate(t, |j| t - self.nodes()[j], row);
         } else {
             self.quotient(0, |j| t - self.nodes()[j], row);
         }
@@ -88,7 +88,7 @@ impl PanelBasis {
         let x = self.check_near(node, offset, row.len())?;
         let t = x + offset;
         if t.abs() > 1.0 {
-            self.extrapolate(t, row);
+            self.extrapolate(t, |j| self.distance(node, offset, j), row);
         } else {
             self.quotient(node, |j| self.distance(node, offset, j), row);
         }
@@ -106,7 +106,7 @@ impl PanelBasis {
     pub fn divided_difference_row(&self, node: usize, offset: f64, row: &mut [f64]) -> Result<()> {
         let x = self.check_near(node, offset, row.len())?;
         if (x + offset).abs() > 1.0 {
-            self.extrapolate(x + offset, row);
+            self.extrapolate(x + offset, |j| self.distance(node, offset, j), row);
             row.iter_mut().for_each(|l| *l /= offset);
         } else {
             self.quotient(node, |j| self.distance(node, offset, j), row);
@@ -226,11 +226,11 @@ impl PanelBasis {
         row.iter_mut().for_each(|l| *l /= sum);
     }
 
-    /// The first barycentric form, for points outside.
-    fn extrapolate(&self, t: f64, row: &mut [f64]) {
+    /// The first barycentric form, for a point `t` outside, at given distances from the nodes.
+    fn extrapolate(&self, t: f64, distance: impl Fn(usize) -> f64, row: &mut [f64]) {
         let p = self.node_polynomial(t);
         for (j, l) in row.iter_mut().enumerate() {
-            *l = p * self.barycentric[j] / (t - self.nodes()[j]);
+            *l = p * self.barycentric[j] / distance(j);
         }
     }
 

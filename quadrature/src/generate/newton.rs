@@ -25,43 +25,70 @@ struct Effort {
     iterations: usize,
 }
 
-/// On the way only a rough rule is needed, and directions that hardly matter are better left alone.
-const ON_THE_WAY: Effort = Effort {
-    enough: 1e-11,
-    accept: 1e-9,
-    rank: 1e-15,
-    patience: 3,
-    iterations: 15,
-};
+/// Ranks tried on the way. A rough rule is enough there, and directions that hardly matter are better left
+/// alone; but sometimes only a finer solution leads on.
+const RANKS_ON_THE_WAY: [f64; 3] = [1e-15, 1e-19, 1e-24];
+/// Ranks of the last iterations, one after the other.
+const LAST_RANKS: [f64; 10] = [
+    1e-15, 1e-16, 1e-17, 1e-18, 1e-19, 1e-20, 1e-22, 1e-24, 1e-26, 1e-28,
+];
+/// The moment error at which no other way is tried.
+const SATISFIED: f64 = 1e-20;
 
-/// Leads the Gauss-Legendre rule to the rule for the logarithm; returns it with its largest moment error,
-/// infinite if the way was lost.
+/// Leads the Gauss-Legendre rule to the rule for the logarithm; returns the best found with its largest
+/// moment error, infinite if every way was lost.
 pub(super) fn continuation(system: &System) -> (Vec<Point>, f64) {
+    let mut best = (Vec::new(), f64::INFINITY);
+    for rank in RANKS_ON_THE_WAY {
+        let Some(rough) = descend(system, rank) else {
+            continue;
+        };
+        let found = finish(system, rough);
+        if found.1 < best.1 {
+            best = found;
+        }
+        if best.1 <= SATISFIED {
+            break;
+        }
+    }
+    best
+}
+
+/// Lowers the smoothing of the logarithm to zero, leaving a rough rule.
+fn descend(system: &System, rank: f64) -> Option<Vec<Point>> {
+    let effort = Effort {
+        enough: 1e-11,
+        accept: 1e-9,
+        rank,
+        patience: 3,
+        iterations: 15,
+    };
     let mut rule = gauss_legendre(system);
     let mut epsilon = system.interval.half.to_f64();
     let mut factor: f64 = 0.8;
     loop {
         let next = epsilon * factor;
         let target = if next < LAST_EPSILON { 0.0 } else { next };
-        if let Some((found, _)) = newton(system, &rule, target, ON_THE_WAY) {
+        if let Some((found, _)) = newton(system, &rule, target, effort) {
             rule = found;
             if target == 0.0 {
-                break;
+                return Some(rule);
             }
             epsilon = next;
             factor = (factor * factor).max(0.1);
         } else {
             factor = factor.sqrt();
             if factor > 0.999 {
-                return (rule, f64::INFINITY);
+                return None;
             }
         }
     }
-    // Now take in one after the other the directions that were left alone.
-    let mut best = (rule, f64::INFINITY);
-    for rank in [
-        1e-15, 1e-16, 1e-17, 1e-18, 1e-19, 1e-20, 1e-22, 1e-24, 1e-26, 1e-28,
-    ] {
+}
+
+/// Takes in, one after the other, the directions that were left alone on the way.
+fn finish(system: &System, rough: Vec<Point>) -> (Vec<Point>, f64) {
+    let mut best = (rough, f64::INFINITY);
+    for rank in LAST_RANKS {
         let effort = Effort {
             enough: 1e-29,
             accept: 1e-9,

@@ -9,7 +9,7 @@ use super::profile::MOST_POINTS;
 use super::{Meridian, Profile};
 
 /// Most bytes of a profile file.
-pub const MOST_BYTES: u64 = 64 << 20;
+pub const MOST_BYTES: u64 = 16 << 20;
 /// Longest line that is read.
 const LONGEST_LINE: u64 = 4096;
 
@@ -17,7 +17,7 @@ impl Profile {
     /// The profile through the points of a file, see [`Profile::from_reader`].
     ///
     /// # Errors
-    /// If the file cannot be read or is larger than 64 MiB (known before reading it), or as in
+    /// If the file cannot be read or is larger than 16 MiB (known before reading it), or as in
     /// [`Profile::from_reader`].
     pub fn from_csv(path: impl AsRef<Path>) -> Result<Self, CurveError> {
         let path = path.as_ref();
@@ -48,7 +48,7 @@ impl Profile {
     /// `#`, and one header line before the first point are skipped. `name` is for messages.
     ///
     /// # Errors
-    /// If reading fails, more than 64 MiB come, a line holds anything else, or the points are no profile: see
+    /// If reading fails, more than 16 MiB come, a line holds anything else, or the points are no profile: see
     /// [`Profile::from_points`].
     pub fn from_reader(reader: impl BufRead, name: &str) -> Result<Self, CurveError> {
         Self::from_points(&points(reader, name)?)

@@ -240,11 +240,12 @@ fn eliminate(rows: &mut [Row]) {
     for i in (0..rows.len().saturating_sub(1)).rev() {
         let below = rows[i + 1].right;
         let row = &mut rows[i];
-        for j in 0..2 {
-            for k in 0..2 {
-                for m in 0..4 {
-                    row.right[j][m] -= row.after[j][k] * below[k][m];
-                }
+        for (right, after) in row.right.iter_mut().zip(row.after) {
+            for (factor, unknowns) in after.iter().zip(below) {
+                right
+                    .iter_mut()
+                    .zip(unknowns)
+                    .for_each(|(x, y)| *x -= factor * y);
             }
         }
     }

@@ -115,6 +115,7 @@ pub fn contract_to(curve: &dyn GeneratingCurve, relative: f64) {
     // Outward normals enclose a positive volume.
     let panels = Panels::resolving(curve, 16, 1e-9).unwrap();
     assert!(volume(curve, &panels) > 0.0);
+    assert_eq!(check_simple(curve), Ok(()), "{curve:?}");
 }
 
 /// Checks area and volume to 1e-12.

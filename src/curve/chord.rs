@@ -28,7 +28,7 @@ pub fn chord_by_quadrature(
         if closed {
             s - period * ((s - first) / period).floor()
         } else {
-            s.clamp(first, last)
+            s.max(first).min(last)
         }
     };
     let s = if (first..=last).contains(&s) {
@@ -160,6 +160,8 @@ mod tests {
             chord_by_quadrature(&torus, &[0.0, TAU], bad, 0.1);
             chord_by_quadrature(&torus, &[0.0, TAU], 0.1, bad);
             chord_by_quadrature(&torus, &[], 0.1, 0.2);
+            chord_by_quadrature(&torus, &[1.0, bad, 0.0], 0.1, 0.2);
+            chord_by_quadrature(&Spheroid::sphere(1.0).unwrap(), &[PI, 0.0], bad, 0.2);
         }
     }
 }

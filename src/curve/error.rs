@@ -68,13 +68,15 @@ pub enum CurveError {
     },
     /// The distance from the centre vanishes or is negative somewhere.
     #[error(
-        "the distance from the centre must be positive everywhere, but is {distance:e} at theta = {theta}"
+        "the distance from the centre must exceed {least:e} everywhere, but is {distance:e} at theta = {theta}"
     )]
     DistanceNotPositive {
         /// Angle from the axis, in radians.
         theta: f64,
         /// The distance there.
         distance: f64,
+        /// The least that is accepted: 1e-6 of the sum of the coefficients' sizes.
+        least: f64,
     },
     /// Too few points for a profile.
     #[error("a profile needs at least {least} different points, got {count}")]

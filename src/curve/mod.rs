@@ -3,27 +3,44 @@
 //! A curve is traversed so that `(-dz/ds, dr/ds)` points out of the body: from the upper pole (`z > 0`)
 //! to the lower one, or clockwise in the `(r, z)` plane's outside sense for a closed loop off the axis.
 
+mod biconcave;
 mod capsule;
 #[cfg(test)]
 mod checks;
 mod chord;
 mod error;
+mod fourier;
+mod function;
 mod legendre;
 mod measures;
+mod outline;
 mod panels;
+mod polar;
+mod polygon;
+mod profile;
+mod profile_file;
+mod quintic;
 mod resolution;
 mod spheroid;
 mod torus;
+mod validate;
 
 use std::fmt::Debug;
 
+pub use biconcave::Biconcave;
 pub use capsule::Capsule;
 pub use chord::chord_by_quadrature;
 pub use error::{CurveError, LARGEST_ASPECT, LONGEST, SHORTEST};
+pub use function::FunctionCurve;
 pub use measures::{arc_length, surface_area, volume};
+pub use outline::{Outline, contains, distance};
 pub use panels::{MOST_PANELS, Panel, Panels};
+pub use polar::Polar;
+pub use profile::{MOST_POINTS, Profile};
+pub use profile_file::MOST_BYTES;
 pub use spheroid::Spheroid;
 pub use torus::Torus;
+pub use validate::check_simple;
 
 /// A point, or a vector, of the meridian half plane; lengths in the units of the case.
 #[derive(Clone, Copy, Debug, PartialEq)]

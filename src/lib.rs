@@ -1,5 +1,6 @@
 //! Boundary-integral solver for Stokes flow around axisymmetric bodies.
 
+pub mod body;
 pub mod case;
 pub mod curve;
 pub mod kernel;
@@ -7,4 +8,3 @@ pub mod output;
 pub mod progress;
 pub mod solve;
 pub mod special;
-pub mod body;

@@ -67,7 +67,13 @@ impl Discretization {
             let last = &nodes[nodes.len() - order..];
             arc_lengths.push(last.iter().map(|node| node.weight / node.r).sum());
         }
-        Ok(Self { curve, panels, basis, nodes, arc_lengths })
+        Ok(Self {
+            curve,
+            panels,
+            basis,
+            nodes,
+            arc_lengths,
+        })
     }
 
     /// The generating curve.

@@ -29,7 +29,11 @@ struct Lu {
 impl Lu {
     fn new(matrix: MatRef<'_, f64>) -> Self {
         let n = matrix.nrows();
-        let mut lu = Self { packed: matrix.to_owned(), forward: vec![0; n], backward: vec![0; n] };
+        let mut lu = Self {
+            packed: matrix.to_owned(),
+            forward: vec![0; n],
+            backward: vec![0; n],
+        };
         let scratch = factor::lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Default::default());
         factor::lu_in_place(
             lu.packed.as_mut(),
@@ -45,7 +49,8 @@ impl Lu {
     /// Solves with the transpose of the matrix that was factored.
     fn solve_transpose(&self, columns: MatMut<'_, f64>) {
         let n = self.packed.nrows();
-        let scratch = solve::solve_transpose_in_place_scratch::<usize, f64>(n, columns.ncols(), Par::Seq);
+        let scratch =
+            solve::solve_transpose_in_place_scratch::<usize, f64>(n, columns.ncols(), Par::Seq);
         solve::solve_transpose_in_place(
             self.packed.as_ref(),
             self.packed.as_ref(),
@@ -72,8 +77,15 @@ impl ModalFactors {
                 lu
             })
             .collect();
-        let root_weights = discretization.nodes().iter().map(|node| node.weight.sqrt()).collect();
-        Self { modes, root_weights }
+        let root_weights = discretization
+            .nodes()
+            .iter()
+            .map(|node| node.weight.sqrt())
+            .collect();
+        Self {
+            modes,
+            root_weights,
+        }
     }
 
     /// Modes, counting the zeroth.
@@ -95,7 +107,11 @@ impl ModalFactors {
             }
             self.scale(columns, |x, root| x * root);
             // The factors are the transposed matrix's.
-            self.modes[n].solve_transpose(MatMut::from_column_major_slice_mut(columns, 3 * nodes, 2));
+            self.modes[n].solve_transpose(MatMut::from_column_major_slice_mut(
+                columns,
+                3 * nodes,
+                2,
+            ));
             self.scale(columns, |x, root| x / root);
         }
         density
@@ -111,14 +127,25 @@ impl ModalFactors {
 }
 
 /// The potential of a density at the nodes: the matrices times its modes.
-pub fn apply(matrices: &ModalMatrices, discretization: &Discretization, density: &SurfaceModes) -> SurfaceModes {
+pub fn apply(
+    matrices: &ModalMatrices,
+    discretization: &Discretization,
+    density: &SurfaceModes,
+) -> SurfaceModes {
     let nodes = density.nodes();
     let mut values = SurfaceModes::zero(matrices.modes() - 1, nodes);
-    let roots: Vec<f64> = discretization.nodes().iter().map(|node| node.weight.sqrt()).collect();
+    let roots: Vec<f64> = discretization
+        .nodes()
+        .iter()
+        .map(|node| node.weight.sqrt())
+        .collect();
     for n in 0..matrices.modes().min(density.modes()) {
         let mut scaled = density.families(n).to_vec();
         for component in scaled.chunks_mut(nodes) {
-            component.iter_mut().zip(&roots).for_each(|(x, root)| *x *= root);
+            component
+                .iter_mut()
+                .zip(&roots)
+                .for_each(|(x, root)| *x *= root);
         }
         let product = matrices.transposed(n).transpose()
             * MatRef::from_column_major_slice(&scaled, 3 * nodes, 2);

@@ -64,8 +64,16 @@ impl<'a> Flow<'a> {
     pub fn new(discretization: &'a Discretization, density: &'a SurfaceModes, eta: f64) -> Self {
         let amplitudes: Vec<f64> = (0..density.modes()).map(|n| density.amplitude(n)).collect();
         let largest = amplitudes.iter().fold(f64::MIN_POSITIVE, |a, &b| a.max(b));
-        let decay = amplitudes.iter().map(|a| (a / largest).max(1e-300).ln()).collect();
-        Self { discretization, density, eta, decay }
+        let decay = amplitudes
+            .iter()
+            .map(|a| (a / largest).max(1e-300).ln())
+            .collect();
+        Self {
+            discretization,
+            density,
+            eta,
+            decay,
+        }
     }
 
     /// Velocity and pressure at every target, with an error of the quadrature below `tolerance` relative to the density.
@@ -89,7 +97,10 @@ impl<'a> Flow<'a> {
             };
             by_level[level as usize].push(index);
         }
-        let nothing = FlowAt { velocity: Vector3::zeros(), pressure: 0.0 };
+        let nothing = FlowAt {
+            velocity: Vector3::zeros(),
+            pressure: 0.0,
+        };
         let mut flow = vec![nothing; targets.len()];
         for (level, indices) in by_level.into_iter().enumerate() {
             if indices.is_empty() {
@@ -142,9 +153,16 @@ impl<'a> Flow<'a> {
         let order = self.discretization.order();
         let far = (digits / (2 * order) as f64).exp();
         let panels = 0..self.discretization.panels().len();
-        let longest = panels.map(|p| self.discretization.arc_length(p)).fold(0.0, f64::max);
+        let longest = panels
+            .map(|p| self.discretization.arc_length(p))
+            .fold(0.0, f64::max);
         let along = 0.25 * (far - 1.0 / far) * longest / f64::from(1u32 << finest);
-        let widest = self.discretization.nodes().iter().map(|n| n.r).fold(0.0, f64::max);
+        let widest = self
+            .discretization
+            .nodes()
+            .iter()
+            .map(|n| n.r)
+            .fold(0.0, f64::max);
         let around = widest * digits / self.azimuths(finest) as f64;
         along.max(around)
     }
@@ -162,8 +180,9 @@ impl<'a> Flow<'a> {
         let mut row = vec![0.0; order];
         let panels = discretization.panels().len();
         let mut points = SurfacePoints::with_capacity(panels * order * parts * count);
-        let rotation: Vec<(f64, f64)> =
-            (0..count).map(|l| (2.0 * PI * l as f64 / count as f64).sin_cos()).collect();
+        let rotation: Vec<(f64, f64)> = (0..count)
+            .map(|l| (2.0 * PI * l as f64 / count as f64).sin_cos())
+            .collect();
         for panel in 0..panels {
             let whole = *discretization.panel(panel);
             for part in 0..parts {
@@ -180,7 +199,9 @@ impl<'a> Flow<'a> {
                         }
                     }
                     let area = node.weight * 2.0 * PI / count as f64;
-                    for (&(sin, cos), &[radial, azimuthal, axial]) in rotation.iter().zip(&components) {
+                    for (&(sin, cos), &[radial, azimuthal, axial]) in
+                        rotation.iter().zip(&components)
+                    {
                         let [nu_r, nu_z] = node.normal;
                         points.push(
                             Vector3::new(node.r * cos, node.r * sin, node.z),
@@ -210,7 +231,11 @@ impl<'a> Flow<'a> {
         for (n, ring) in ring.iter_mut().enumerate().take(self.density.modes()) {
             let (first, second) = (interpolate(n, 0), interpolate(n, 1));
             // Re((c - i s) e^{i n theta}) = c cos + s sin.
-            *ring = if j == 1 { Complex64::new(-second, -first) } else { Complex64::new(first, -second) };
+            *ring = if j == 1 {
+                Complex64::new(-second, -first)
+            } else {
+                Complex64::new(first, -second)
+            };
         }
     }
 }

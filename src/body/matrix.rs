@@ -66,18 +66,50 @@ impl ModalMatrices {
             .zip(azimuthal.par_chunks_mut(row_length))
             .zip(axial.par_chunks_mut(row_length))
             .enumerate()
-            .try_for_each_init(Buffers::default, |buffers, (target, ((radial, azimuthal), axial))| {
-                let mut rows = [radial, azimuthal, axial];
-                buffers.fill_rows(discretization, kernel, &engine, &rules, target, &mut rows)?;
-                for (component, row) in rows.into_iter().enumerate() {
-                    for mode in row.chunks_mut(unknowns) {
-                        mode[component * nodes + target] += identity;
+            .try_for_each_init(
+                Buffers::default,
+                |buffers, (target, ((radial, azimuthal), axial))| {
+                    let mut rows = [radial, azimuthal, axial];
+                    buffers.fill_rows(
+                        discretization,
+                        kernel,
+                        &engine,
+                        &rules,
+                        target,
+                        &mut rows,
+                    )?;
+                    for (component, row) in rows.into_iter().enumerate() {
+                        for mode in row.chunks_mut(unknowns) {
+                            mode[component * nodes + target] += identity;
+                        }
                     }
-                }
-                done();
-                Ok(())
-            })?;
-        Ok(Self { modes, unknowns, rows })
+                    done();
+                    Ok(())
+                },
+            )?;
+        Ok(Self {
+            modes,
+            unknowns,
+            rows,
+        })
+    }
+
+    /// Adds $\nu\langle\nu,\cdot\rangle$, the normal times the mean normal component: a matrix of rank one, in mode 0.
+    pub(crate) fn add_normal_projection(&mut self, discretization: &Discretization) {
+        let nodes = discretization.nodes();
+        let area: f64 = nodes.iter().map(|node| node.weight).sum();
+        let normal = |component: usize, node: &Node| match component {
+            0 => node.normal[0] * node.weight.sqrt(),
+            2 => node.normal[1] * node.weight.sqrt(),
+            _ => 0.0,
+        };
+        for i in 0..self.unknowns {
+            let first = i * self.modes * self.unknowns;
+            let left = normal(i / nodes.len(), &nodes[i % nodes.len()]);
+            for (j, entry) in self.rows[first..][..self.unknowns].iter_mut().enumerate() {
+                *entry += left * normal(j / nodes.len(), &nodes[j % nodes.len()]) / area;
+            }
+        }
     }
 
     /// Modes, counting the zeroth.
@@ -118,7 +150,10 @@ impl Buffers {
         let nodes = discretization.nodes();
         let (home, local) = (index / order, index % order);
         let at = &nodes[index];
-        let target = TargetRing { r: at.r, normal: at.normal };
+        let target = TargetRing {
+            r: at.r,
+            normal: at.normal,
+        };
         self.sources.clear();
         self.columns.clear();
         for panel in 0..discretization.panels().len() {
@@ -128,7 +163,8 @@ impl Buffers {
         }
         for &column in &self.columns {
             let node = &nodes[column];
-            self.sources.push(node.r, [at.r - node.r, at.z - node.z], node.normal);
+            self.sources
+                .push(node.r, [at.r - node.r, at.z - node.z], node.normal);
         }
         engine.evaluate(kernel, target, &self.sources, &mut self.workspace);
         self.scatter_far(nodes, at, engine.count(), rows);
@@ -147,7 +183,12 @@ impl Buffers {
     }
 
     fn scatter_far(&self, nodes: &[Node], at: &Node, modes: usize, rows: &mut [&mut [f64]; 3]) {
-        let Workspace { block, stride, order, .. } = &self.workspace;
+        let Workspace {
+            block,
+            stride,
+            order,
+            ..
+        } = &self.workspace;
         for n in 0..modes {
             for (k, sign) in SIGN.into_iter().enumerate() {
                 let entries = &block[(n * 9 + k) * stride..];
@@ -170,15 +211,23 @@ impl Buffers {
         order: usize,
         rows: &mut [&mut [f64]; 3],
     ) {
-        let Workspace { block, stride, order: columns, .. } = &self.workspace;
+        let Workspace {
+            block,
+            stride,
+            order: columns,
+            ..
+        } = &self.workspace;
         let count = columns.len();
         self.weighted.clear();
         for &source in columns {
             let weight = self.near.nodes[source].weight;
             let interpolation = &self.near.interpolation[source * order..][..order];
-            self.weighted.extend(interpolation.iter().zip(&nodes[first..]).map(|(l, node)| {
-                l * weight * (at.weight / node.weight).sqrt()
-            }));
+            self.weighted.extend(
+                interpolation
+                    .iter()
+                    .zip(&nodes[first..])
+                    .map(|(l, node)| l * weight * (at.weight / node.weight).sqrt()),
+            );
         }
         self.interpolated.resize(modes * 9 * order, 0.0);
         // Column-major views: the transposes of what is meant, so that entries stay contiguous.

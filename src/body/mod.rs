@@ -4,6 +4,7 @@
 //!
 //! | module | what |
 //! |---|---|
+//! | [`dirichlet`] | Dirichlet problems: equations and solver |
 //! | [`discretization`] | panels and nodes on the generating curve |
 //! | [`near`] | which quadrature resolves a panel's action on a near target |
 //! | [`matrix`] | modal Nyström matrices |
@@ -12,6 +13,7 @@
 //! | [`flow`] | velocity and pressure away from the body |
 //! | [`rigid`] | rigid motions, force and torque |
 
+pub mod dirichlet;
 pub mod discretization;
 pub mod factors;
 pub mod flow;

@@ -125,20 +125,32 @@ impl NearRules {
             let order = discretization.order();
             if panel == home {
                 let rule = KolmRokhlin::own(order, target)?;
-                for (&offset, &weight) in rule.offsets.iter().zip(rule.weights) {
-                    near.push_on(discretization, panel, target, offset, weight)?;
+                for node in rule.iter() {
+                    near.push_on(discretization, panel, target, node.offset, node.weight)?;
                 }
                 return Ok(());
             }
             if let Some(side) = next_door(discretization, home, panel) {
                 let rule = KolmRokhlin::neighbour(order, target, side)?;
-                for (&t, &weight) in rule.nodes.iter().zip(rule.weights) {
-                    near.push_off(discretization, at, panel, t, weight)?;
+                let half = 0.5 * discretization.panel(panel).length();
+                for node in rule.iter() {
+                    let ds = half * node.offset;
+                    near.push_off(discretization, at, panel, node.node, ds, node.weight)?;
                 }
                 return Ok(());
             }
         }
-        self.bisect(discretization, at, panel, if panel == home { Position::On(target) } else { Position::Off }, near)
+        self.bisect(
+            discretization,
+            at,
+            panel,
+            if panel == home {
+                Position::On(target)
+            } else {
+                Position::Off
+            },
+            near,
+        )
     }
 
     fn bisect(
@@ -152,7 +164,12 @@ impl NearRules {
         let curve = discretization.curve();
         let whole = discretization.panel(panel);
         let mut parts = std::mem::take(&mut near.parts);
-        let part = |start: f64, end: f64, at_target| Part { start, end, depth: 0, at_target };
+        let part = |start: f64, end: f64, at_target| Part {
+            start,
+            end,
+            depth: 0,
+            at_target,
+        };
         // Coordinates relative to the target where it is on the panel, so that parts next to it keep their digits.
         match position {
             Position::On(node) => {
@@ -162,7 +179,13 @@ impl NearRules {
             Position::Off => parts.push(part(-1.0, 1.0, false)),
         }
         let half = 0.5 * whole.length();
-        while let Some(Part { start, end, depth, at_target }) = parts.pop() {
+        while let Some(Part {
+            start,
+            end,
+            depth,
+            at_target,
+        }) = parts.pop()
+        {
             let place = |t: f64| match position {
                 Position::On(_) => {
                     let chord = curve.chord(target.s, half * t);
@@ -195,10 +218,27 @@ impl NearRules {
                     _ => {
                         for (x, w) in self.gauss.iter() {
                             // From the nearer end of the part, so that offsets from the target stay accurate.
-                            let t = if x < 0.0 { start + 0.5 * width * (1.0 + x) } else { end - 0.5 * width * (1.0 - x) };
+                            let t = if x < 0.0 {
+                                start + 0.5 * width * (1.0 + x)
+                            } else {
+                                end - 0.5 * width * (1.0 - x)
+                            };
                             match position {
-                                Position::On(node) => near.push_on(discretization, panel, node, t, 0.5 * width * w)?,
-                                Position::Off => near.push_off(discretization, target, panel, t, 0.5 * width * w)?,
+                                Position::On(node) => {
+                                    near.push_on(discretization, panel, node, t, 0.5 * width * w)?
+                                }
+                                Position::Off => {
+                                    let ds =
+                                        parameter_difference(discretization, target, whole.at(t));
+                                    near.push_off(
+                                        discretization,
+                                        target,
+                                        panel,
+                                        t,
+                                        ds,
+                                        0.5 * width * w,
+                                    )?;
+                                }
                             }
                         }
                     }
@@ -227,16 +267,16 @@ fn panel_ends(discretization: &Discretization, panel: usize) -> [[f64; 2]; 2] {
     })
 }
 
-/// On which side of the target's panel `home` the source panel lies, if it is as long and next to it on the same smooth piece.
+/// On which side of the source panel the target's panel `home` lies, if it is as long and next to it on the same smooth piece.
 fn next_door(discretization: &Discretization, home: usize, panel: usize) -> Option<Side> {
     let (mine, other) = (discretization.panel(home), discretization.panel(panel));
     let smooth = mine.piece == other.piece
         && (mine.length() - other.length()).abs() <= 1e-12 * mine.length();
     if smooth && mine.end == other.start {
-        return Some(Side::Right);
+        return Some(Side::Left);
     }
     if smooth && mine.start == other.end {
-        return Some(Side::Left);
+        return Some(Side::Right);
     }
     None
 }
@@ -275,28 +315,47 @@ impl NearNodes {
         self.push(discretization, at, at.s + ds, ds, half * weight);
         let first = self.interpolation.len();
         self.interpolation.resize(first + order, 0.0);
-        discretization.basis().interpolation_row_near(target, offset, &mut self.interpolation[first..])
+        discretization.basis().interpolation_row_near(
+            target,
+            offset,
+            &mut self.interpolation[first..],
+        )
     }
 
-    /// A node at `t` of a panel that the target is not on.
+    /// A node at `t` of a panel that the target is not on, `ds` from the target in the curve's parameter.
     fn push_off(
         &mut self,
         discretization: &Discretization,
         target: &Node,
         panel: usize,
         t: f64,
+        ds: f64,
         weight: f64,
     ) -> Result<(), QuadratureError> {
         let source = discretization.panel(panel);
-        let s = source.at(t);
-        let ds = parameter_difference(discretization, target, s);
-        self.push(discretization, target, s, ds, 0.5 * source.length() * weight);
+        self.push(
+            discretization,
+            target,
+            source.at(t),
+            ds,
+            0.5 * source.length() * weight,
+        );
         let first = self.interpolation.len();
-        self.interpolation.resize(first + discretization.order(), 0.0);
-        discretization.basis().interpolation_row(t, &mut self.interpolation[first..])
+        self.interpolation
+            .resize(first + discretization.order(), 0.0);
+        discretization
+            .basis()
+            .interpolation_row(t, &mut self.interpolation[first..])
     }
 
-    fn push(&mut self, discretization: &Discretization, target: &Node, s: f64, ds: f64, weight: f64) {
+    fn push(
+        &mut self,
+        discretization: &Discretization,
+        target: &Node,
+        s: f64,
+        ds: f64,
+        weight: f64,
+    ) {
         let curve = discretization.curve();
         let chord = curve.chord(target.s, ds);
         self.nodes.push(Node::new(&**curve, s, weight));

@@ -55,7 +55,11 @@ impl Wrench {
         let mut force = Vector3::zeros();
         let mut torque = Vector3::zeros();
         let at = |n: usize, family: usize, j: usize, k: usize| {
-            if n < density.modes() { density.component(n, family, j)[k] } else { 0.0 }
+            if n < density.modes() {
+                density.component(n, family, j)[k]
+            } else {
+                0.0
+            }
         };
         for (k, node) in discretization.nodes().iter().enumerate() {
             let (r, z, weight) = (node.r, node.z, PI * node.weight);

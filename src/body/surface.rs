@@ -34,7 +34,11 @@ pub fn azimuths(n_max: usize) -> usize {
 impl SurfaceModes {
     /// The field that vanishes.
     pub fn zero(n_max: usize, nodes: usize) -> Self {
-        Self { modes: n_max + 1, nodes, values: vec![0.0; (n_max + 1) * 6 * nodes] }
+        Self {
+            modes: n_max + 1,
+            nodes,
+            values: vec![0.0; (n_max + 1) * 6 * nodes],
+        }
     }
 
     /// The modes up to `n_max` of the field `f`, a vector in the body's frame at a point of its surface.
@@ -115,7 +119,11 @@ impl SurfaceModes {
             let (sin, cos) = (n as f64 * theta).sin_cos();
             for (j, value) in value.iter_mut().enumerate() {
                 let (first, second) = (self.component(n, 0, j)[k], self.component(n, 1, j)[k]);
-                *value += if j == 1 { first * sin - second * cos } else { first * cos + second * sin };
+                *value += if j == 1 {
+                    first * sin - second * cos
+                } else {
+                    first * cos + second * sin
+                };
             }
         }
         value
@@ -123,6 +131,8 @@ impl SurfaceModes {
 
     /// The largest absolute value of a coefficient of mode `n`.
     pub fn amplitude(&self, n: usize) -> f64 {
-        self.families(n).iter().fold(0.0, |most, x| most.max(x.abs()))
+        self.families(n)
+            .iter()
+            .fold(0.0, |most, x| most.max(x.abs()))
     }
 }

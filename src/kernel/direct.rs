@@ -29,7 +29,11 @@ pub struct FlowAt {
 impl SurfacePoints {
     pub fn with_capacity(count: usize) -> Self {
         let buffers = || std::array::from_fn(|_| Vec::with_capacity(count + PADDING));
-        Self { position: buffers(), normal: buffers(), strength: buffers() }
+        Self {
+            position: buffers(),
+            normal: buffers(),
+            strength: buffers(),
+        }
     }
 
     pub fn push(&mut self, position: Vector3<f64>, normal: Vector3<f64>, strength: Vector3<f64>) {
@@ -51,7 +55,13 @@ impl SurfacePoints {
     pub fn flow(&self, eta: f64, targets: &[Point3<f64>]) -> Vec<FlowAt> {
         targets
             .par_iter()
-            .map(|&target| Arch::new().dispatch(Sum { points: self, eta, target }))
+            .map(|&target| {
+                Arch::new().dispatch(Sum {
+                    points: self,
+                    eta,
+                    target,
+                })
+            })
             .collect()
     }
 }
@@ -67,7 +77,11 @@ impl WithSimd for Sum<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> FlowAt {
-        let Self { points, eta, target } = self;
+        let Self {
+            points,
+            eta,
+            target,
+        } = self;
         let splat = |x| Lanes::splat(simd, x);
         let target = [splat(target.x), splat(target.y), splat(target.z)];
         let [x, y, z] = points.position.each_ref().map(|b| S::as_simd_f64s(b).0);
@@ -103,7 +117,8 @@ impl WithSimd for Sum<'_> {
         }
         let factor = 1.0 / (8.0 * PI);
         FlowAt {
-            velocity: Vector3::new(velocity[0].sum(), velocity[1].sum(), velocity[2].sum()) * factor,
+            velocity: Vector3::new(velocity[0].sum(), velocity[1].sum(), velocity[2].sum())
+                * factor,
             pressure: pressure.sum() * factor,
         }
     }

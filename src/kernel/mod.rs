@@ -35,9 +35,9 @@ mod single_layer;
 mod tests;
 mod traction;
 
+pub(crate) use combined::CombinedField;
 pub use direct::FlowAt;
 pub(crate) use direct::SurfacePoints;
-pub(crate) use combined::CombinedField;
 pub(crate) use double_layer::DoubleLayer;
 pub(crate) use modes::{Kernel, Modes, SourceRings, TargetRing, Workspace};
 pub(crate) use pressure::{DoubleLayerPressure, SingleLayerPressure};

@@ -1,0 +1,186 @@
+//! Dirichlet problems on one body: equations, factors, densities.
+//!
+//! | problem | equation | flow |
+//! |---|---|---|
+//! | exterior, combined field | $(\frac12 + D + \eta S)\sigma = f$ | $u = D[\sigma] + \eta S[\sigma]$ |
+//! | exterior, single layer | $(S + \nu\langle\nu, \cdot\rangle)\sigma = f$ | $u = S[\sigma]$ |
+//! | interior, completed double layer | $(-\frac12 + D + \nu\langle\nu, \cdot\rangle)\sigma = f$ | $u = D[\sigma]$ |
+//!
+//! with $\langle\nu, \sigma\rangle$ the mean of the normal component over the surface. The normal spans the null space of $S$ and is
+//! what $-\frac12 + D$ cannot reach; the added term vanishes when $f$ has no net flux, as it must for the single layer and in the interior.
+
+use panel_quadrature::QuadratureError;
+
+use super::discretization::Discretization;
+use super::factors::ModalFactors;
+use super::flow::Flow;
+use super::matrix::ModalMatrices;
+use super::rigid::{RigidMotion, Wrench};
+use super::surface::SurfaceModes;
+use crate::kernel::{CombinedField, DoubleLayer, SingleLayer};
+use crate::progress::Progress;
+use crate::special::toroidal;
+
+/// The equation that is solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Formulation {
+    /// Exterior problem, second kind, well conditioned for every body.
+    CombinedField,
+    /// Exterior problem, first kind: ill conditioned, and only for data without net flux.
+    SingleLayer,
+    /// Interior problem, second kind, only for data without net flux.
+    InteriorDoubleLayer,
+}
+
+/// The factored equation of one shape: solves for any number of right-hand sides.
+#[derive(Clone, Debug)]
+pub struct DirichletSolver {
+    discretization: Discretization,
+    formulation: Formulation,
+    eta: f64,
+    factors: ModalFactors,
+    seconds: Seconds,
+}
+
+/// Wall-clock time of the stages.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Seconds {
+    /// Assembling the matrices.
+    pub assemble: f64,
+    /// Factoring them.
+    pub factor: f64,
+}
+
+impl DirichletSolver {
+    /// Assembles and factors the equation for modes up to `n_max`.
+    ///
+    /// # Errors
+    /// If a quadrature rule is missing.
+    pub fn new(
+        discretization: Discretization,
+        formulation: Formulation,
+        n_max: usize,
+        progress: &dyn Progress,
+    ) -> Result<Self, QuadratureError> {
+        let eta = match formulation {
+            Formulation::CombinedField => natural_weight(&discretization),
+            Formulation::SingleLayer => 1.0,
+            Formulation::InteriorDoubleLayer => 0.0,
+        };
+        let start = std::time::Instant::now();
+        progress.begin("assembling", discretization.nodes().len());
+        let matrices = assemble(&discretization, formulation, eta, n_max, progress)?;
+        let assemble = start.elapsed().as_secs_f64();
+        let start = std::time::Instant::now();
+        progress.begin("factoring", matrices.modes());
+        let factors = ModalFactors::new(&matrices, &discretization, &|| progress.advance(1));
+        let seconds = Seconds {
+            assemble,
+            factor: start.elapsed().as_secs_f64(),
+        };
+        Ok(Self {
+            discretization,
+            formulation,
+            eta,
+            factors,
+            seconds,
+        })
+    }
+
+    /// The nodes.
+    pub fn discretization(&self) -> &Discretization {
+        &self.discretization
+    }
+
+    /// Modes, counting the zeroth.
+    pub fn modes(&self) -> usize {
+        self.factors.count()
+    }
+
+    /// Unknowns of all modes: three components at each node for two families, one for mode 0.
+    pub fn unknowns(&self) -> usize {
+        3 * self.discretization.nodes().len() * (2 * self.modes() - 1)
+    }
+
+    /// The single layer's weight in the flow, in units of 1/length.
+    pub fn eta(&self) -> f64 {
+        self.eta
+    }
+
+    /// How long the stages took.
+    pub fn seconds(&self) -> Seconds {
+        self.seconds
+    }
+
+    /// The density for boundary values `data`.
+    pub fn solve(&self, data: &SurfaceModes) -> SurfaceModes {
+        self.factors.solve(data)
+    }
+
+    /// The flow of a density, for viscosity 1.
+    pub fn flow<'a>(&'a self, density: &'a SurfaceModes) -> Flow<'a> {
+        Flow::new(&self.discretization, density, self.eta)
+    }
+
+    /// Force and torque (about the origin) that the body exerts on the fluid, for viscosity 1: of the single layer alone, since
+    /// a double layer exerts none.
+    pub fn wrench(&self, density: &SurfaceModes) -> Wrench {
+        let Wrench { force, torque } = Wrench::of(&self.discretization, density);
+        Wrench {
+            force: self.eta * force,
+            torque: self.eta * torque,
+        }
+    }
+
+    /// Force and torque exerted on the fluid (viscosity 1) in a rigid motion.
+    pub fn resistance(&self, motion: &RigidMotion) -> Wrench {
+        self.wrench(&self.solve(&motion.on(&self.discretization)))
+    }
+}
+
+/// The matrices of a formulation.
+pub(crate) fn assemble(
+    discretization: &Discretization,
+    formulation: Formulation,
+    eta: f64,
+    n_max: usize,
+    progress: &dyn Progress,
+) -> Result<ModalMatrices, QuadratureError> {
+    let done = || progress.advance(1);
+    let mut matrices = match formulation {
+        Formulation::CombinedField => {
+            ModalMatrices::assemble(discretization, &CombinedField { eta }, 0.5, n_max, &done)?
+        }
+        Formulation::SingleLayer => {
+            ModalMatrices::assemble(discretization, &SingleLayer, 0.0, n_max, &done)?
+        }
+        Formulation::InteriorDoubleLayer => {
+            ModalMatrices::assemble(discretization, &DoubleLayer, -0.5, n_max, &done)?
+        }
+    };
+    if formulation != Formulation::CombinedField {
+        matrices.add_normal_projection(discretization);
+    }
+    Ok(matrices)
+}
+
+/// The weight $\eta$ that makes the single layer as strong on translations as the identity: with
+/// $\lambda = \frac{1}{6\pi\lvert\Gamma\rvert} \int\\!\int \frac{d\Gamma\, d\Gamma'}{\lvert x - x'\rvert}$, the mean of $\langle e, S e\rangle$ over directions $e$, it is $1/\lambda$
+/// ($3/2a$ for a sphere of radius $a$).
+fn natural_weight(discretization: &Discretization) -> f64 {
+    let nodes = discretization.nodes();
+    let mut energy = 0.0;
+    let mut area = 0.0;
+    for x in nodes {
+        area += x.weight;
+        for y in nodes {
+            // A node's own share, from the mean distance within its stretch of curve: this is a weight, not a result.
+            let rho = (x.r - y.r).hypot(x.z - y.z).max(0.2 * x.weight / x.r);
+            let big_r = 2.0 * x.r * y.r;
+            let (q0, _) = toroidal::start(rho * rho / big_r);
+            energy += x.weight * y.weight * (8.0 / big_r).sqrt() * q0;
+        }
+    }
+    6.0 * std::f64::consts::PI * area / energy
+}

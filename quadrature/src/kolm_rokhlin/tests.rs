@@ -102,21 +102,26 @@ fn mirrored_targets_have_mirrored_rules() {
     }
 }
 
+/// Functions that are nearly dependent leave a rule for a neighbour a little freedom: with another machine's
+/// `ln` in the last place some nodes move by 1e-13 without a change in any moment.
 #[test]
 fn generator_repeats_the_tables() {
-    let compare = |made: generate::Generated, rule: KolmRokhlin| {
+    let compare = |made: generate::Generated, rule: KolmRokhlin, tolerance: f64| {
+        assert!(made.residual < 1e-20);
         for (j, n) in rule.iter().enumerate() {
-            assert!((made.offsets[j] / n.offset - 1.0).abs() < 1e-13);
-            assert!((made.weights[j] / n.weight - 1.0).abs() < 1e-13);
+            assert!((made.offsets[j] / n.offset - 1.0).abs() < tolerance);
+            assert!((made.weights[j] / n.weight - 1.0).abs() < tolerance);
         }
     };
     compare(
         generate::own(10, 5).unwrap(),
         KolmRokhlin::own(10, 5).unwrap(),
+        1e-13,
     );
     compare(
         generate::neighbour(10, 7).unwrap(),
         KolmRokhlin::neighbour(10, 7, Side::Right).unwrap(),
+        1e-10,
     );
 }
 

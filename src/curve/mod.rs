@@ -1,7 +1,29 @@
 //! Generating curves: the meridian of a body of revolution, in the half plane `(r, z)` with `r >= 0`.
 //!
 //! A curve is traversed so that `(-dz/ds, dr/ds)` points out of the body: from the upper pole (`z > 0`)
-//! to the lower one, or clockwise in the `(r, z)` plane's outside sense for a closed loop off the axis.
+//! to the lower one; a closed loop off the axis clockwise, with r to the right and z up.
+//!
+//! | curve | type |
+//! |---|---|
+//! | sphere, spheroid | [`Spheroid`] |
+//! | cylinder with hemispherical caps | [`Capsule`] |
+//! | torus | [`Torus`] |
+//! | red cell | [`Biconcave`] |
+//! | cosine series of the distance from the centre | [`Polar`] |
+//! | smooth spline through points, from memory or a file | [`Profile`] |
+//! | any function | [`FunctionCurve`] |
+//!
+//! [`Panels`] cut a curve into intervals for quadrature, by hand or from a tolerance; [`Outline`] tells inside
+//! from outside and measures distances; [`check_simple`] says whether a curve bounds a body.
+//!
+//! ```
+//! use axistokes::curve::{Panels, Spheroid, surface_area};
+//!
+//! let sphere = Spheroid::sphere(1.0)?;
+//! let panels = Panels::resolving(&sphere, 16, 1e-12)?;
+//! assert!((surface_area(&sphere, &panels) - 4.0 * std::f64::consts::PI).abs() < 1e-12);
+//! # Ok::<(), axistokes::curve::CurveError>(())
+//! ```
 
 mod biconcave;
 mod capsule;

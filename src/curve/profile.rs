@@ -284,13 +284,14 @@ impl GeneratingCurve for Profile {
         let mut end = self.knots[knot] + left;
         let mut seam = 0.0;
         if self.topology == Topology::Loop && !(first..=last).contains(&end) {
-            let wrapped = self.wrapped(end);
-            seam = wrapped - end;
-            end = wrapped;
+            // Whole periods, so that the step itself is not rounded.
+            let period = last - first;
+            seam = -period * ((end - first) / period).floor();
+            end += seam;
         }
         let (j, _) = self.locate(end);
         let target = if ds > 0.0 { j } else { j + 1 };
-        let on = (self.knots[knot] - self.knots[target]) + (left + seam);
+        let on = (self.knots[knot] - self.knots[target]) + seam + left;
         let from = self.knots[target] - self.knots[j];
         let parts = [
             difference(&self.segments[i], t, to_knot),
@@ -364,6 +365,52 @@ mod tests {
         ] {
             // The short chord crosses no knot to speak of; where it does, the curve is C^4 only.
             checks::contract_to(&Profile::from_points(&sample(curve, 64)).unwrap(), 1e-14);
+        }
+    }
+
+    #[test]
+    fn short_chords_across_knots_and_the_seam_are_precise() {
+        for curve in [
+            &Spheroid::new(1.0, 0.5).unwrap() as &dyn GeneratingCurve,
+            &Torus::new(1.0, 0.5).unwrap(),
+        ] {
+            let profile = Profile::from_points(&sample(curve, 64)).unwrap();
+            let mut knots = profile.knots.clone();
+            if profile.topology == Topology::PoleToPole {
+                knots = knots[1..64].to_vec();
+            }
+            for knot in knots {
+                for (back, ds) in [
+                    (1e-9, 3e-9),
+                    (-1e-9, -3e-9),
+                    (0.0, 1e-8),
+                    (0.0, -1e-8),
+                    (1e-10, 1e-10),
+                ] {
+                    let (chord, tangent) = (profile.chord(knot - back, ds), profile.tangent(knot));
+                    let middle = 0.5 * ds - back;
+                    let (on, off) = (profile.tangent(knot + 1e-4), profile.tangent(knot - 1e-4));
+                    let bent = [on.r - off.r, on.z - off.z].map(|d| d / 2e-4 * middle);
+                    let error = (chord.r / ds - tangent.r - bent[0])
+                        .hypot(chord.z / ds - tangent.z - bent[1]);
+                    assert!(error < 1e-13, "{curve:?} at {knot}, {back} {ds}: {error:e}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn panels_resolve_a_coarse_spline() {
+        for (count, tolerance) in [(20, 1e-8), (100, 1e-10), (2000, 1e-12)] {
+            let profile =
+                Profile::from_points(&sample(&Spheroid::new(1.0, 0.5).unwrap(), count)).unwrap();
+            let panels = Panels::resolving(&profile, 16, tolerance).unwrap();
+            println!("{count} points to {tolerance:e}: {} panels", panels.len());
+            assert!(
+                panels.len() < 1000,
+                "{count}, {tolerance}: {}",
+                panels.len()
+            );
         }
     }
 

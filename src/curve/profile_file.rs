@@ -187,6 +187,19 @@ mod tests {
     }
 
     #[test]
+    fn files_are_read_or_refused_by_size() {
+        let path =
+            std::env::temp_dir().join(format!("axistokes-profile-{}.csv", std::process::id()));
+        std::fs::write(&path, circle()).unwrap();
+        let good = Profile::from_csv(&path);
+        File::create(&path).unwrap().set_len(1 << 30).unwrap();
+        let large = Profile::from_csv(&path);
+        std::fs::remove_file(&path).unwrap();
+        assert_eq!(good, read(&circle()));
+        assert!(matches!(large, Err(CurveError::FileTooLarge { .. })));
+    }
+
+    #[test]
     fn too_much_is_refused_early() {
         let endless = std::io::BufReader::new(std::io::repeat(b'\n'));
         assert!(matches!(

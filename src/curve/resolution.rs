@@ -201,6 +201,21 @@ mod tests {
     }
 
     #[test]
+    fn common_bodies_need_few_panels() {
+        let needed = |curve: &dyn GeneratingCurve, most: usize| {
+            let panels = Panels::resolving(curve, 16, 1e-10).unwrap();
+            println!("{curve:?}: {} panels", panels.len());
+            assert!(panels.len() <= most, "{curve:?}: {} panels", panels.len());
+        };
+        needed(&Spheroid::new(1.0, 0.5).unwrap(), 8);
+        needed(&Spheroid::new(0.01, 1.0).unwrap(), 24);
+        needed(&Spheroid::new(100.0, 1.0).unwrap(), 24);
+        needed(&Torus::new(1.0, 0.9).unwrap(), 8);
+        needed(&Capsule::new(1.0, 2.0).unwrap(), 4);
+        needed(&super::super::Biconcave::new(1.0).unwrap(), 16);
+    }
+
+    #[test]
     fn bad_orders_and_tolerances_are_refused() {
         let sphere = Spheroid::sphere(1.0).unwrap();
         for order in [0, 3, 65] {

@@ -78,3 +78,31 @@ fn combined_field_reaches_the_bars() {
     assert!(errors(Formulation::CombinedField, 12, 10, 60).0 <= 1e-10);
     assert!(errors(Formulation::CombinedField, 12, 16, 80).0 <= 1e-13);
 }
+
+#[test]
+#[ignore]
+fn scan() {
+    for (p, o, n) in [
+        (12, 10, 50),
+        (12, 10, 60),
+        (12, 10, 80),
+        (16, 10, 60),
+        (16, 10, 80),
+        (24, 10, 80),
+        (8, 16, 50),
+        (8, 16, 70),
+        (8, 16, 80),
+        (10, 16, 60),
+        (10, 16, 80),
+        (12, 16, 60),
+        (12, 16, 80),
+        (16, 16, 80),
+        (16, 16, 100),
+        (24, 16, 100),
+    ] {
+        errors(Formulation::CombinedField, p, o, n);
+    }
+    for (p, o, n) in [(8, 16, 60), (12, 16, 80), (12, 10, 60)] {
+        errors(Formulation::SingleLayer, p, o, n);
+    }
+}

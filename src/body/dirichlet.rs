@@ -17,7 +17,7 @@ use super::flow::Flow;
 use super::matrix::ModalMatrices;
 use super::rigid::{RigidMotion, Wrench};
 use super::surface::SurfaceModes;
-use crate::kernel::{CombinedField, DoubleLayer, SingleLayer};
+use crate::kernel::{CombinedField, DoubleLayer, LayerWeights, SingleLayer};
 use crate::progress::Progress;
 use crate::special::toroidal;
 
@@ -33,12 +33,23 @@ pub enum Formulation {
     InteriorDoubleLayer,
 }
 
+impl Formulation {
+    fn weights(self, discretization: &Discretization) -> LayerWeights {
+        let [double, single] = match self {
+            Self::CombinedField => [1.0, natural_weight(discretization)],
+            Self::SingleLayer => [0.0, 1.0],
+            Self::InteriorDoubleLayer => [1.0, 0.0],
+        };
+        LayerWeights { double, single }
+    }
+}
+
 /// The factored equation of one shape: solves for any number of right-hand sides.
 #[derive(Clone, Debug)]
 pub struct DirichletSolver {
     discretization: Discretization,
     formulation: Formulation,
-    eta: f64,
+    weights: LayerWeights,
     factors: ModalFactors,
     seconds: Seconds,
 }
@@ -63,14 +74,10 @@ impl DirichletSolver {
         n_max: usize,
         progress: &dyn Progress,
     ) -> Result<Self, QuadratureError> {
-        let eta = match formulation {
-            Formulation::CombinedField => natural_weight(&discretization),
-            Formulation::SingleLayer => 1.0,
-            Formulation::InteriorDoubleLayer => 0.0,
-        };
+        let weights = formulation.weights(&discretization);
         let start = std::time::Instant::now();
         progress.begin("assembling", discretization.nodes().len());
-        let matrices = assemble(&discretization, formulation, eta, n_max, progress)?;
+        let matrices = assemble(&discretization, formulation, weights, n_max, progress)?;
         let assemble = start.elapsed().as_secs_f64();
         let start = std::time::Instant::now();
         progress.begin("factoring", matrices.modes());
@@ -82,7 +89,7 @@ impl DirichletSolver {
         Ok(Self {
             discretization,
             formulation,
-            eta,
+            weights,
             factors,
             seconds,
         })
@@ -103,9 +110,14 @@ impl DirichletSolver {
         3 * self.discretization.nodes().len() * (2 * self.modes() - 1)
     }
 
-    /// The single layer's weight in the flow, in units of 1/length.
-    pub fn eta(&self) -> f64 {
-        self.eta
+    /// The equation.
+    pub fn formulation(&self) -> Formulation {
+        self.formulation
+    }
+
+    /// The layer potentials that make up the flow.
+    pub fn weights(&self) -> LayerWeights {
+        self.weights
     }
 
     /// How long the stages took.
@@ -120,7 +132,7 @@ impl DirichletSolver {
 
     /// The flow of a density, for viscosity 1.
     pub fn flow<'a>(&'a self, density: &'a SurfaceModes) -> Flow<'a> {
-        Flow::new(&self.discretization, density, self.eta)
+        Flow::new(&self.discretization, density, self.weights)
     }
 
     /// Force and torque (about the origin) that the body exerts on the fluid, for viscosity 1: of the single layer alone, since
@@ -128,8 +140,8 @@ impl DirichletSolver {
     pub fn wrench(&self, density: &SurfaceModes) -> Wrench {
         let Wrench { force, torque } = Wrench::of(&self.discretization, density);
         Wrench {
-            force: self.eta * force,
-            torque: self.eta * torque,
+            force: self.weights.single * force,
+            torque: self.weights.single * torque,
         }
     }
 
@@ -143,15 +155,21 @@ impl DirichletSolver {
 pub(crate) fn assemble(
     discretization: &Discretization,
     formulation: Formulation,
-    eta: f64,
+    weights: LayerWeights,
     n_max: usize,
     progress: &dyn Progress,
 ) -> Result<ModalMatrices, QuadratureError> {
     let done = || progress.advance(1);
     let mut matrices = match formulation {
-        Formulation::CombinedField => {
-            ModalMatrices::assemble(discretization, &CombinedField { eta }, 0.5, n_max, &done)?
-        }
+        Formulation::CombinedField => ModalMatrices::assemble(
+            discretization,
+            &CombinedField {
+                eta: weights.single,
+            },
+            0.5,
+            n_max,
+            &done,
+        )?,
         Formulation::SingleLayer => {
             ModalMatrices::assemble(discretization, &SingleLayer, 0.0, n_max, &done)?
         }
@@ -165,9 +183,9 @@ pub(crate) fn assemble(
     Ok(matrices)
 }
 
-/// The weight $\eta$ that makes the single layer as strong on translations as the identity: with
-/// $\lambda = \frac{1}{6\pi\lvert\Gamma\rvert} \int\\!\int \frac{d\Gamma\, d\Gamma'}{\lvert x - x'\rvert}$, the mean of $\langle e, S e\rangle$ over directions $e$, it is $1/\lambda$
-/// ($3/2a$ for a sphere of radius $a$).
+/// The weight $\eta$ that makes the single layer as strong on translations as $\frac12$: with
+/// $\lambda = \frac{1}{6\pi\lvert\Gamma\rvert} \int\\!\int \frac{d\Gamma\, d\Gamma'}{\lvert x - x'\rvert}$, the mean of $\langle e, S e\rangle$ over directions $e$, it is $1/2\lambda$
+/// ($3/4a$ for a sphere of radius $a$).
 fn natural_weight(discretization: &Discretization) -> f64 {
     let nodes = discretization.nodes();
     let mut energy = 0.0;
@@ -182,5 +200,5 @@ fn natural_weight(discretization: &Discretization) -> f64 {
             energy += x.weight * y.weight * (8.0 / big_r).sqrt() * q0;
         }
     }
-    6.0 * std::f64::consts::PI * area / energy
+    3.0 * std::f64::consts::PI * area / energy
 }

@@ -15,14 +15,14 @@ use rustfft::{Fft, FftPlanner};
 use super::discretization::{Discretization, Node};
 use super::near::bernstein;
 use super::surface::{SurfaceModes, azimuths};
-use crate::kernel::{FlowAt, SurfacePoints};
+use crate::kernel::{FlowAt, LayerWeights, SurfacePoints};
 
-/// The flow of a density on a body: $u = D[\sigma] + \eta S[\sigma]$ for viscosity 1, in the body's frame.
+/// The flow of a density on a body, for viscosity 1, in the body's frame.
 #[derive(Clone, Debug)]
 pub struct Flow<'a> {
     discretization: &'a Discretization,
     density: &'a SurfaceModes,
-    eta: f64,
+    weights: LayerWeights,
     /// Logarithm of each mode's largest coefficient relative to the largest of all.
     decay: Vec<f64>,
 }
@@ -60,8 +60,12 @@ pub enum FlowError {
 const LEVELS: u32 = 4;
 
 impl<'a> Flow<'a> {
-    /// The flow of `density`, with weight `eta` (1/length) of its single layer.
-    pub fn new(discretization: &'a Discretization, density: &'a SurfaceModes, eta: f64) -> Self {
+    /// The flow of the layer potentials of `density`, weighted.
+    pub fn new(
+        discretization: &'a Discretization,
+        density: &'a SurfaceModes,
+        weights: LayerWeights,
+    ) -> Self {
         let amplitudes: Vec<f64> = (0..density.modes()).map(|n| density.amplitude(n)).collect();
         let largest = amplitudes.iter().fold(f64::MIN_POSITIVE, |a, &b| a.max(b));
         let decay = amplitudes
@@ -71,7 +75,7 @@ impl<'a> Flow<'a> {
         Self {
             discretization,
             density,
-            eta,
+            weights,
             decay,
         }
     }
@@ -108,7 +112,7 @@ impl<'a> Flow<'a> {
             }
             let points = self.resample(level as u32)?;
             let some: Vec<_> = indices.iter().map(|&i| targets[i]).collect();
-            for (i, at) in indices.into_iter().zip(points.flow(self.eta, &some)) {
+            for (i, at) in indices.into_iter().zip(points.flow(self.weights, &some)) {
                 flow[i] = at;
             }
         }

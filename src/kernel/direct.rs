@@ -17,6 +17,15 @@ pub(crate) struct SurfacePoints {
     strength: [Vec<f64>; 3],
 }
 
+/// How much of each layer potential of a density makes up a flow: $u = w_D D[\sigma] + w_S S[\sigma]$.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LayerWeights {
+    /// Weight $w_D$ of the double layer, a number.
+    pub double: f64,
+    /// Weight $w_S$ of the single layer; beside a double layer, in units of 1/length.
+    pub single: f64,
+}
+
 /// Velocity and pressure at a point, for viscosity 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlowAt {
@@ -51,14 +60,14 @@ impl SurfacePoints {
         }
     }
 
-    /// $D[\sigma] + \eta S[\sigma]$ and its pressure at every target, the sum in the order of the points; parallel over targets.
-    pub fn flow(&self, eta: f64, targets: &[Point3<f64>]) -> Vec<FlowAt> {
+    /// Velocity and pressure of the layer potentials at every target, the sum in the order of the points; parallel over targets.
+    pub fn flow(&self, weights: LayerWeights, targets: &[Point3<f64>]) -> Vec<FlowAt> {
         targets
             .par_iter()
             .map(|&target| {
                 Arch::new().dispatch(Sum {
                     points: self,
-                    eta,
+                    weights,
                     target,
                 })
             })
@@ -68,7 +77,7 @@ impl SurfacePoints {
 
 struct Sum<'a> {
     points: &'a SurfacePoints,
-    eta: f64,
+    weights: LayerWeights,
     target: Point3<f64>,
 }
 
@@ -79,7 +88,7 @@ impl WithSimd for Sum<'_> {
     fn with_simd<S: Simd>(self, simd: S) -> FlowAt {
         let Self {
             points,
-            eta,
+            weights,
             target,
         } = self;
         let splat = |x| Lanes::splat(simd, x);
@@ -91,7 +100,8 @@ impl WithSimd for Sum<'_> {
         let mut pressure = splat(0.0);
         let one = splat(1.0);
         // Common factor 1/(8 pi) left to the end.
-        let (six, eta, two_eta) = (splat(6.0), splat(eta), splat(2.0 * eta));
+        let (six, four) = (splat(6.0 * weights.double), splat(4.0 * weights.double));
+        let (single, twice) = (splat(weights.single), splat(2.0 * weights.single));
         for i in 0..x.len() {
             let at = |b: &[S::f64s]| Lanes(simd, b[i]);
             let d = [target[0] - at(x), target[1] - at(y), target[2] - at(z)];
@@ -104,15 +114,15 @@ impl WithSimd for Sum<'_> {
             let inv = inv2.sqrt();
             let inv3 = inv * inv2;
             let (df, dn, nf) = (dot(&d, &f), dot(&d, &n), dot(&n, &f));
-            // 6 (d.f)(d.n)/|d|^5 + eta (d.f)/|d|^3 along d, eta/|d| along f.
+            // 6 w_D (d.f)(d.n)/|d|^5 + w_S (d.f)/|d|^3 along d, w_S/|d| along f.
             let stresslet = six * dn * inv2;
-            let along_d = df * inv3 * (stresslet + eta);
-            let along_f = eta * inv;
+            let along_d = df * inv3 * (stresslet + single);
+            let along_f = single * inv;
             for k in 0..3 {
                 velocity[k] = velocity[k] + along_d.mul_add(d[k], along_f * f[k]);
             }
-            // 4 (-n.f + 3 (d.f)(d.n)/|d|^2)/|d|^3 + 2 eta (d.f)/|d|^3.
-            let in_brackets = df.mul_add(2.0 * stresslet + two_eta, -4.0 * nf);
+            // 4 w_D (-n.f + 3 (d.f)(d.n)/|d|^2)/|d|^3 + 2 w_S (d.f)/|d|^3.
+            let in_brackets = df.mul_add(2.0 * stresslet + twice, -(four * nf));
             pressure = inv3.mul_add(in_brackets, pressure);
         }
         let factor = 1.0 / (8.0 * PI);

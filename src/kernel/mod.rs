@@ -36,8 +36,8 @@ mod tests;
 mod traction;
 
 pub(crate) use combined::CombinedField;
-pub use direct::FlowAt;
 pub(crate) use direct::SurfacePoints;
+pub use direct::{FlowAt, LayerWeights};
 pub(crate) use double_layer::DoubleLayer;
 pub(crate) use modes::{Kernel, Modes, SourceRings, TargetRing, Workspace};
 pub(crate) use pressure::{DoubleLayerPressure, SingleLayerPressure};

@@ -44,7 +44,7 @@ fn exact(stokeslets: &[(Vector3<f64>, Vector3<f64>)], x: Vector3<f64>) -> (Vecto
 fn errors(formulation: Formulation, panels: usize, order: usize, n_max: usize) -> (f64, f64) {
     let (stokeslets, targets) = case();
     let curve = Arc::new(Spheroid::new(1.0, 0.5).expect("a spheroid"));
-    let panels = Panels::uniform(&*curve, panels).expect("panels");
+    let panels = Panels::equal_arcs(&*curve, panels).expect("panels");
     let discretization = Discretization::new(curve, panels, order).expect("nodes");
     let solver =
         DirichletSolver::new(discretization, formulation, n_max, &Silent).expect("a solver");

@@ -103,6 +103,42 @@ impl Panels {
         curve: &(impl GeneratingCurve + ?Sized),
         count: usize,
     ) -> Result<Self, CurveError> {
+        Self::divided(curve, count, |piece, parts, k| {
+            piece.start + piece.length() * k as f64 / parts as f64
+        })
+    }
+
+    /// `count` panels of equal arc length within each smooth piece, shared among the pieces like [uniform](Self::uniform)
+    /// ones: where the parameter runs faster here than there, these resolve more with as many.
+    ///
+    /// # Errors
+    /// If `count` is less than the number of pieces, or more than [`MOST_PANELS`].
+    pub fn equal_arcs(
+        curve: &(impl GeneratingCurve + ?Sized),
+        count: usize,
+    ) -> Result<Self, CurveError> {
+        Self::divided(curve, count, |piece, parts, k| {
+            let wanted = arc_length(curve, piece.start, piece.end) * k as f64 / parts as f64;
+            // Arc length grows with the parameter: bisection to rounding.
+            let (mut low, mut high) = (piece.start, piece.end);
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                if arc_length(curve, piece.start, middle) < wanted {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            0.5 * (low + high)
+        })
+    }
+
+    /// `count` panels, with inner end number `k` of the `parts` of a piece where `end` puts it.
+    fn divided(
+        curve: &(impl GeneratingCurve + ?Sized),
+        count: usize,
+        end: impl Fn(&Panel, usize, usize) -> f64,
+    ) -> Result<Self, CurveError> {
         let pieces = Self::pieces(curve)?;
         let least = pieces.len();
         if count < least || count > MOST_PANELS {
@@ -119,19 +155,20 @@ impl Panels {
         let counts = shares(&lengths, count);
         let mut panels = Vec::with_capacity(count);
         for (piece, &parts) in pieces.iter().zip(&counts) {
-            let width = piece.length() / parts as f64;
-            let end = |k: usize| {
-                if k == parts {
+            let mut start = piece.start;
+            for k in 1..=parts {
+                let end = if k == parts {
                     piece.end
                 } else {
-                    piece.start + width * k as f64
-                }
-            };
-            panels.extend((0..parts).map(|k| Panel {
-                start: end(k),
-                end: end(k + 1),
-                ..*piece
-            }));
+                    end(piece, parts, k)
+                };
+                panels.push(Panel {
+                    start,
+                    end,
+                    ..*piece
+                });
+                start = end;
+            }
         }
         Ok(Self {
             panels,

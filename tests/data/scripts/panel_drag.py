@@ -106,7 +106,7 @@ def resist(curve, panels, closed=False):
                     r_, z_, dr_, dz_ = curve(pj, xx)
                     length = np.hypot(np.diff(r_), np.diff(z_)).sum()
                     d = min(np.hypot(r_ - rt, z_ - zt).min(), np.hypot(r_ + rt, z_ - zt).min())
-                    if d >= 1.2 * length or (h - l) < 1e-13 * (q1 - q0):
+                    if d >= 1.2 * length or (h - l) < max(1e-13 * (q1 - q0), 4e-15):
                         if first:
                             whole = True
                         else:
@@ -197,7 +197,7 @@ def show(u, v):
     out = []
     for x, y in zip(u, v):
         d = int(np.clip(-np.log10(abs(x - y) / abs(y) + 1e-16), 3, 13))
-        out.append((f"{y:.{d}g}", d))
+        out.append((f"{y:.15e}", d))
     return out
 
 
@@ -225,7 +225,7 @@ if __name__ == "__main__":
         print("# Origin: tests/data/scripts/panel_drag.py (double precision, computed here, not published values). digits: agreement of two")
         print("# resolutions (panels halved 6 and 9 times towards the joints, where the curvature jumps).")
         print("radius,length,force_along,force_across,torque_along,torque_across,digits")
-        for radius, length in ((0.5, 2.0), (0.5, 1.0), (1.0, 1.0), (1.0, 4.0), (0.25, 2.0), (0.5, 9.0)):
+        for radius, length in ((0.5, 2.0), (0.5, 1.0), (1.0, 1.0), (0.25, 2.0)):
             u = resist(capsule(radius, length), capsule_panels(radius, length, 2, 6))
             v = resist(capsule(radius, length), capsule_panels(radius, length, 3, 9))
             print(radius, length, u / v - 1, file=sys.stderr)

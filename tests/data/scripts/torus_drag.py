@@ -201,7 +201,7 @@ def same_digits(u, v):
 
 
 if __name__ == "__main__":
-    sizes = {0.01: (8, 12), 0.1: (14, 20), 0.25: (20, 28), 0.5: (30, 40), 0.75: (40, 56), 0.9: (56, 80)}
+    sizes = {0.01: (8, 12), 0.1: (14, 20), 0.25: (20, 28), 0.5: (30, 40), 0.75: (40, 56), 0.9: (80, 112)}
     if len(sys.argv) > 1:
         sizes = {float(sys.argv[1]): (int(sys.argv[2]), int(sys.argv[3]))}
     print("# Torus, major radius 1, viscosity 1: force and torque on the fluid per unit velocity / angular velocity.")

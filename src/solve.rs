@@ -1,7 +1,20 @@
 //! From a case to its answer.
 
-use crate::case::{Case, CaseError};
-use crate::output::Report;
+use std::sync::Arc;
+
+use nalgebra::{Point3, Unit, Vector3};
+
+use crate::body::dirichlet;
+use crate::body::flow::FlowError;
+use crate::body::frame::Frame;
+use crate::body::problem::{Answer, BoundaryVelocity, Problem, ProblemError, Resolution};
+use crate::body::rigid::RigidMotion;
+use crate::case::{Accuracy, Body, Case, CaseError, Formulation, Motion};
+use crate::curve::{GeneratingCurve, Meridian, Outline, Panels};
+use crate::kernel::Stokeslet;
+use crate::output::{
+    BodyReport, Discretization, KnownFlowReport, ProbeReport, Report, Timings,
+};
 use crate::progress::Progress;
 
 /// Why a case has no answer.
@@ -14,9 +27,6 @@ pub enum SolveError {
     /// The computation itself failed.
     #[error("{0}")]
     Failed(String),
-    /// There is no solver yet.
-    #[error("not built yet: the solver")]
-    NotBuilt,
 }
 
 /// Solves a case once.
@@ -27,6 +37,178 @@ pub enum SolveError {
 /// [`SolveError::Case`] if the case asks for the impossible or for what is not built.
 pub fn solve(case: &Case, progress: &dyn Progress) -> Result<Report, SolveError> {
     case.check_supported()?;
-    progress.begin("solve", 0);
-    Err(SolveError::NotBuilt)
+    let [body] = &case.bodies[..] else {
+        return Err(case.error(0, "expected one body").into());
+    };
+    let setting = Setting::new(case, body)?;
+    let targets: Vec<Point3<f64>> =
+        case.probes.iter().map(|probe| setting.frame.point_to_body(probe.value.into())).collect();
+    let known = setting.known_flow()?;
+    let field = |x: Vector3<f64>| known.iter().map(|s| s.velocity(x.into())).sum::<Vector3<f64>>();
+    let velocity = if case.test.is_some() {
+        BoundaryVelocity::Field(&field)
+    } else {
+        BoundaryVelocity::Rigid(setting.motion())
+    };
+    let problem = Problem {
+        curve: setting.curve.clone(),
+        velocity,
+        targets: &targets,
+        formulation: match case.solver.formulation {
+            Formulation::SingleLayer => dirichlet::Formulation::SingleLayer,
+            _ => dirichlet::Formulation::CombinedField,
+        },
+    };
+    let answer = match case.accuracy {
+        Accuracy::Tolerance(tolerance) => problem.to_tolerance(tolerance, progress),
+        Accuracy::ByHand { panels, order, modes } => {
+            Panels::equal_arcs(&*setting.curve, panels)
+                .map_err(ProblemError::from)
+                .and_then(|panels| problem.at_resolution(Resolution { panels, order, modes }, progress))
+        }
+    }
+    .map_err(|error| setting.problem_error(error))?;
+    let mut report = setting.report(&answer);
+    if case.test.is_some() {
+        let exact = targets.iter().map(|&x| field(x.coords));
+        let errors = exact.zip(&answer.flow).map(|(exact, computed)| (exact - computed.velocity).amax());
+        let absolute_error = errors.fold(0.0, f64::max);
+        report.test = Some(KnownFlowReport {
+            absolute_error,
+            relative_error: absolute_error / answer.largest_speed,
+        });
+    }
+    Ok(report)
+}
+
+/// A case's one body, ready to be computed with.
+struct Setting<'a> {
+    case: &'a Case,
+    body: &'a Body,
+    frame: Frame,
+    curve: Arc<dyn GeneratingCurve>,
+}
+
+impl<'a> Setting<'a> {
+    /// Builds the curve and checks that the probes are outside of the body and the Stokeslets inside.
+    fn new(case: &'a Case, body: &'a Body) -> Result<Self, CaseError> {
+        let shape = case.shape_of(body);
+        let at_shape = |error: &dyn std::fmt::Display| {
+            case.error(shape.line, format!("shapes.{}: {error}", body.shape))
+        };
+        let curve = shape.value.curve().map_err(|error| at_shape(&error))?;
+        let frame = Frame::new(body.center.into(), Unit::new_normalize(body.axis.into()));
+        let outline = Outline::new(&*curve).map_err(|error| at_shape(&error))?;
+        let inside = |point: [f64; 3]| {
+            let x = frame.point_to_body(point.into());
+            outline.contains(Meridian { r: x.x.hypot(x.y), z: x.z })
+        };
+        for probe in &case.probes {
+            if inside(probe.value) {
+                let message = format!(
+                    "probes.points: {:?} lies inside the body: expected a point in the fluid",
+                    probe.value
+                );
+                return Err(case.error(probe.line, message));
+            }
+        }
+        for stokeslet in case.test.iter().flat_map(|test| &test.stokeslets) {
+            if !inside(stokeslet.at) {
+                let message = format!(
+                    "test.stokeslets: at = {:?} lies outside the body: expected a point inside",
+                    stokeslet.at
+                );
+                return Err(case.error(stokeslet.line, message));
+            }
+        }
+        drop(outline);
+        Ok(Self { case, body, frame, curve })
+    }
+
+    /// The Stokeslets of `[test]` in the body's frame, as strong as they are at viscosity 1.
+    fn known_flow(&self) -> Result<Vec<Stokeslet>, CaseError> {
+        let stokeslets = self.case.test.iter().flat_map(|test| &test.stokeslets);
+        Ok(stokeslets
+            .map(|s| Stokeslet {
+                at: self.frame.point_to_body(s.at.into()),
+                force: self.frame.vector_to_body(s.force.into()) / self.case.viscosity,
+            })
+            .collect())
+    }
+
+    /// The body's motion in its own frame.
+    fn motion(&self) -> RigidMotion {
+        let (velocity, angular_velocity) = self.imposed();
+        RigidMotion {
+            velocity: self.frame.vector_to_body(velocity.into()),
+            angular_velocity: self.frame.vector_to_body(angular_velocity.into()),
+        }
+    }
+
+    fn imposed(&self) -> ([f64; 3], [f64; 3]) {
+        match self.body.motion.value {
+            Motion::Rigid { velocity, angular_velocity } if self.case.test.is_none() => {
+                (velocity, angular_velocity)
+            }
+            _ => ([0.0; 3], [0.0; 3]),
+        }
+    }
+
+    fn report(&self, answer: &Answer) -> Report {
+        let viscosity = self.case.viscosity;
+        let to_lab = |v: Vector3<f64>| self.frame.vector_to_lab(v).into();
+        let (velocity, angular_velocity) = self.imposed();
+        let probes = self.case.probes.iter().zip(&answer.flow).map(|(probe, flow)| ProbeReport {
+            point: probe.value,
+            velocity: to_lab(flow.velocity),
+            pressure: viscosity * flow.pressure,
+        });
+        let t = answer.timings;
+        Report {
+            bodies: vec![BodyReport {
+                velocity,
+                angular_velocity,
+                force: to_lab(viscosity * answer.wrench.force),
+                torque: to_lab(viscosity * answer.wrench.torque),
+            }],
+            probes: probes.collect(),
+            error_estimate: answer.error_estimate,
+            iterations: 0,
+            unknowns: answer.unknowns,
+            discretization: vec![Discretization {
+                shape: self.body.shape.clone(),
+                panels: answer.resolution.panels.len(),
+                order: answer.resolution.order,
+                modes: answer.resolution.modes,
+            }],
+            timings: Timings {
+                assemble: t.assemble,
+                factor: t.factor,
+                iterate: t.solve,
+                evaluate: t.evaluate,
+                estimate: t.estimate,
+            },
+            test: None,
+        }
+    }
+
+    fn problem_error(&self, error: ProblemError) -> SolveError {
+        let at_shape = |error: &dyn std::fmt::Display| {
+            let line = self.case.shape_of(self.body).line;
+            self.case.error(line, format!("shapes.{}: {error}", self.body.shape)).into()
+        };
+        match error {
+            ProblemError::Flow(FlowError::TooNear { index, tolerance, least, .. }) => {
+                let probe = &self.case.probes[index];
+                let message = format!(
+                    "probes.points: {:?} is too near to the surface for a tolerance of {tolerance:e}: \
+                     expected a distance of about {least:.1e} or more (close evaluation is not supported yet)",
+                    probe.value
+                );
+                self.case.error(probe.line, message).into()
+            }
+            ProblemError::Curve(error) => at_shape(&error),
+            other => SolveError::Failed(other.to_string()),
+        }
+    }
 }

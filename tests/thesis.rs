@@ -49,7 +49,7 @@ fn errors(formulation: Formulation, panels: usize, order: usize, n_max: usize) -
     let solver =
         DirichletSolver::new(discretization, formulation, n_max, &Silent).expect("a solver");
     let flow = |x| exact(&stokeslets, x).0;
-    let (data, _) = SurfaceModes::sample(solver.discretization(), n_max, flow);
+    let data = SurfaceModes::sample(solver.discretization(), n_max, flow).modes;
     let density = solver.solve(&data);
     let computed = solver
         .flow(&density)

@@ -10,14 +10,18 @@
 //! | [`matrix`] | modal Nyström matrices |
 //! | [`surface`] | vector fields on the surface and their modes |
 //! | [`factors`] | factors of the modal matrices, which belong to the shape |
+//! | [`frame`] | the body's frame and the laboratory's |
 //! | [`flow`] | velocity and pressure away from the body |
+//! | [`problem`] | exterior problems, answered with an estimate of the error |
 //! | [`rigid`] | rigid motions, force and torque |
 
 pub mod dirichlet;
 pub mod discretization;
 pub mod factors;
 pub mod flow;
+pub mod frame;
 pub mod matrix;
 mod near;
+pub mod problem;
 pub mod rigid;
 pub mod surface;

@@ -26,6 +26,11 @@ pub struct Wrench {
 }
 
 impl RigidMotion {
+    /// The velocity at `x`.
+    pub fn at(&self, x: Vector3<f64>) -> Vector3<f64> {
+        self.velocity + self.angular_velocity.cross(&x)
+    }
+
     /// The motion's velocity on the surface: modes 0 and 1, exactly.
     pub fn on(&self, discretization: &Discretization) -> SurfaceModes {
         let nodes = discretization.nodes();

@@ -20,6 +20,15 @@ pub struct SurfaceModes {
     values: Vec<f64>,
 }
 
+/// A field sampled on the surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sampled {
+    /// Its modes.
+    pub modes: SurfaceModes,
+    /// Its largest magnitude at the samples; infinite if it is not finite at one of them.
+    pub largest: f64,
+}
+
 /// Samples around each ring that determine modes up to `n_max`, with room for a few beyond: a length the FFT is quick at.
 pub fn azimuths(n_max: usize) -> usize {
     let least = 2 * n_max + 8;
@@ -43,22 +52,24 @@ impl SurfaceModes {
 
     /// The modes up to `n_max` of the field `f`, a vector in the body's frame at a point of its surface.
     ///
-    /// Returns with them the largest coefficient of the modes just beyond `n_max`: what is left out.
     pub fn sample(
         discretization: &Discretization,
         n_max: usize,
         f: impl Fn(Vector3<f64>) -> Vector3<f64>,
-    ) -> (Self, f64) {
+    ) -> Sampled {
         let nodes = discretization.nodes();
         let count = azimuths(n_max);
         let fft: Arc<dyn Fft<f64>> = FftPlanner::new().plan_fft_forward(count);
         let mut modes = Self::zero(n_max, nodes.len());
-        let mut beyond = 0.0f64;
+        let mut largest = 0.0f64;
         let mut rings = vec![vec![Complex64::default(); count]; 3];
         for (k, node) in nodes.iter().enumerate() {
             for l in 0..count {
                 let (sin, cos) = (2.0 * PI * l as f64 / count as f64).sin_cos();
                 let value = f(Vector3::new(node.r * cos, node.r * sin, node.z));
+                // `max` would pass over a NaN.
+                let magnitude = value.norm();
+                largest = if magnitude.is_nan() { f64::INFINITY } else { largest.max(magnitude) };
                 rings[0][l] = (value.x * cos + value.y * sin).into();
                 rings[1][l] = (value.y * cos - value.x * sin).into();
                 rings[2][l] = value.z.into();
@@ -69,7 +80,7 @@ impl SurfaceModes {
                     let scale = if n == 0 { 1.0 } else { 2.0 } / count as f64;
                     let (cos, sin) = (scale * c.re, -scale * c.im);
                     if n > n_max {
-                        beyond = beyond.max(cos.abs()).max(sin.abs());
+                        break;
                     } else if j == 1 {
                         modes.component_mut(n, 0, j)[k] = sin;
                         modes.component_mut(n, 1, j)[k] = -cos;
@@ -80,7 +91,7 @@ impl SurfaceModes {
                 }
             }
         }
-        (modes, beyond)
+        Sampled { modes, largest }
     }
 
     /// Modes, counting the zeroth.

@@ -28,6 +28,7 @@
 mod accuracy;
 mod background;
 mod body;
+mod curve;
 mod error;
 mod file;
 mod known_flow;

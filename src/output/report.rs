@@ -73,6 +73,8 @@ pub struct Timings {
     pub iterate: f64,
     /// Evaluating the flow at the probes.
     pub evaluate: f64,
+    /// Everything else: choosing the resolution, and the second solution that the error is estimated from.
+    pub estimate: f64,
 }
 
 /// Largest error of the velocity at the probes against a known flow.

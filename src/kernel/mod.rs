@@ -31,6 +31,7 @@ mod moments;
 mod pair;
 mod pressure;
 mod single_layer;
+mod stokeslet;
 #[cfg(test)]
 mod tests;
 mod traction;
@@ -42,4 +43,5 @@ pub(crate) use double_layer::DoubleLayer;
 pub(crate) use modes::{Kernel, Modes, SourceRings, TargetRing, Workspace};
 pub(crate) use pressure::{DoubleLayerPressure, SingleLayerPressure};
 pub(crate) use single_layer::SingleLayer;
+pub use stokeslet::Stokeslet;
 pub(crate) use traction::SingleLayerTraction;

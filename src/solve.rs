@@ -45,12 +45,7 @@ pub fn solve(case: &Case, progress: &dyn Progress) -> Result<Report, SolveError>
         .map(|probe| setting.frame.point_to_body(probe.value.into()))
         .collect();
     let known = setting.known_flow()?;
-    let field = |x: Vector3<f64>| {
-        known
-            .iter()
-            .map(|s| s.velocity(x))
-            .sum::<Vector3<f64>>()
-    };
+    let field = |x: Vector3<f64>| known.iter().map(|s| s.velocity(x)).sum::<Vector3<f64>>();
     let velocity = if case.test.is_some() {
         BoundaryVelocity::Field(&field)
     } else {

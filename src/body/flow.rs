@@ -59,6 +59,9 @@ pub enum FlowError {
 /// Resamplings: number `l` cuts every panel into `2^l` and takes `2^l` times as many azimuths.
 const LEVELS: u32 = 4;
 
+/// Natural logarithm of what the rules' errors exceed the bare powers by: the kernels are large near the surface.
+const MARGIN: f64 = 5.0;
+
 impl<'a> Flow<'a> {
     /// The flow of the layer potentials of `density`, weighted.
     pub fn new(
@@ -125,7 +128,7 @@ impl<'a> Flow<'a> {
 
     /// Whether both rules of a level are good to the tolerance at a target.
     fn resolves(&self, level: u32, target: &Point3<f64>, tolerance: f64) -> bool {
-        let digits = -tolerance.ln() + 2.0;
+        let digits = -tolerance.ln() + MARGIN;
         let order = self.discretization.order();
         let far = (digits / (2 * order) as f64).exp();
         let (r, z) = (target.x.hypot(target.y), target.z);
@@ -152,7 +155,7 @@ impl<'a> Flow<'a> {
 
     /// About the distance from the surface at which the finest resampling starts to resolve.
     fn least_distance(&self, tolerance: f64) -> f64 {
-        let digits = -tolerance.ln() + 2.0;
+        let digits = -tolerance.ln() + MARGIN;
         let finest = LEVELS - 1;
         let order = self.discretization.order();
         let far = (digits / (2 * order) as f64).exp();

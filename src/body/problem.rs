@@ -118,7 +118,7 @@ const ROUNDING: f64 = 4e-15;
 const MOST_MODES: usize = 400;
 /// Largest number of nodes on the curve the solver chooses, and of entries in all its matrices.
 const MOST_NODES: usize = 4000;
-const MOST_ENTRIES: f64 = 4e8;
+const MOST_ENTRIES: f64 = 6e8;
 /// Rounds of refinement.
 const ROUNDS: usize = 24;
 
@@ -161,7 +161,7 @@ impl Problem<'_> {
         progress: &dyn Progress,
     ) -> Result<Answer, ProblemError> {
         let begin = Instant::now();
-        let evaluation = (0.01 * tolerance).max(EVALUATION);
+        let evaluation = (1e-3 * tolerance).max(EVALUATION);
         let first = Panels::resolving(&*self.curve, ORDER, tolerance.sqrt().clamp(1e-7, 1e-2))?;
         let mut resolution = Resolution {
             panels: first,

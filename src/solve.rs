@@ -12,9 +12,7 @@ use crate::body::rigid::RigidMotion;
 use crate::case::{Accuracy, Body, Case, CaseError, Formulation, Motion};
 use crate::curve::{GeneratingCurve, Meridian, Outline, Panels};
 use crate::kernel::Stokeslet;
-use crate::output::{
-    BodyReport, Discretization, KnownFlowReport, ProbeReport, Report, Timings,
-};
+use crate::output::{BodyReport, Discretization, KnownFlowReport, ProbeReport, Report, Timings};
 use crate::progress::Progress;
 
 /// Why a case has no answer.
@@ -41,10 +39,18 @@ pub fn solve(case: &Case, progress: &dyn Progress) -> Result<Report, SolveError>
         return Err(case.error(0, "expected one body").into());
     };
     let setting = Setting::new(case, body)?;
-    let targets: Vec<Point3<f64>> =
-        case.probes.iter().map(|probe| setting.frame.point_to_body(probe.value.into())).collect();
+    let targets: Vec<Point3<f64>> = case
+        .probes
+        .iter()
+        .map(|probe| setting.frame.point_to_body(probe.value.into()))
+        .collect();
     let known = setting.known_flow()?;
-    let field = |x: Vector3<f64>| known.iter().map(|s| s.velocity(x.into())).sum::<Vector3<f64>>();
+    let field = |x: Vector3<f64>| {
+        known
+            .iter()
+            .map(|s| s.velocity(x))
+            .sum::<Vector3<f64>>()
+    };
     let velocity = if case.test.is_some() {
         BoundaryVelocity::Field(&field)
     } else {
@@ -61,17 +67,30 @@ pub fn solve(case: &Case, progress: &dyn Progress) -> Result<Report, SolveError>
     };
     let answer = match case.accuracy {
         Accuracy::Tolerance(tolerance) => problem.to_tolerance(tolerance, progress),
-        Accuracy::ByHand { panels, order, modes } => {
-            Panels::equal_arcs(&*setting.curve, panels)
-                .map_err(ProblemError::from)
-                .and_then(|panels| problem.at_resolution(Resolution { panels, order, modes }, progress))
-        }
+        Accuracy::ByHand {
+            panels,
+            order,
+            modes,
+        } => Panels::equal_arcs(&*setting.curve, panels)
+            .map_err(ProblemError::from)
+            .and_then(|panels| {
+                problem.at_resolution(
+                    Resolution {
+                        panels,
+                        order,
+                        modes,
+                    },
+                    progress,
+                )
+            }),
     }
     .map_err(|error| setting.problem_error(error))?;
     let mut report = setting.report(&answer);
     if case.test.is_some() {
         let exact = targets.iter().map(|&x| field(x.coords));
-        let errors = exact.zip(&answer.flow).map(|(exact, computed)| (exact - computed.velocity).amax());
+        let errors = exact
+            .zip(&answer.flow)
+            .map(|(exact, computed)| (exact - computed.velocity).amax());
         let absolute_error = errors.fold(0.0, f64::max);
         report.test = Some(KnownFlowReport {
             absolute_error,
@@ -101,7 +120,10 @@ impl<'a> Setting<'a> {
         let outline = Outline::new(&*curve).map_err(|error| at_shape(&error))?;
         let inside = |point: [f64; 3]| {
             let x = frame.point_to_body(point.into());
-            outline.contains(Meridian { r: x.x.hypot(x.y), z: x.z })
+            outline.contains(Meridian {
+                r: x.x.hypot(x.y),
+                z: x.z,
+            })
         };
         for probe in &case.probes {
             if inside(probe.value) {
@@ -122,7 +144,12 @@ impl<'a> Setting<'a> {
             }
         }
         drop(outline);
-        Ok(Self { case, body, frame, curve })
+        Ok(Self {
+            case,
+            body,
+            frame,
+            curve,
+        })
     }
 
     /// The Stokeslets of `[test]` in the body's frame, as strong as they are at viscosity 1.
@@ -130,7 +157,7 @@ impl<'a> Setting<'a> {
         let stokeslets = self.case.test.iter().flat_map(|test| &test.stokeslets);
         Ok(stokeslets
             .map(|s| Stokeslet {
-                at: self.frame.point_to_body(s.at.into()),
+                at: self.frame.point_to_body(s.at.into()).coords,
                 force: self.frame.vector_to_body(s.force.into()) / self.case.viscosity,
             })
             .collect())
@@ -147,9 +174,10 @@ impl<'a> Setting<'a> {
 
     fn imposed(&self) -> ([f64; 3], [f64; 3]) {
         match self.body.motion.value {
-            Motion::Rigid { velocity, angular_velocity } if self.case.test.is_none() => {
-                (velocity, angular_velocity)
-            }
+            Motion::Rigid {
+                velocity,
+                angular_velocity,
+            } if self.case.test.is_none() => (velocity, angular_velocity),
             _ => ([0.0; 3], [0.0; 3]),
         }
     }
@@ -158,11 +186,16 @@ impl<'a> Setting<'a> {
         let viscosity = self.case.viscosity;
         let to_lab = |v: Vector3<f64>| self.frame.vector_to_lab(v).into();
         let (velocity, angular_velocity) = self.imposed();
-        let probes = self.case.probes.iter().zip(&answer.flow).map(|(probe, flow)| ProbeReport {
-            point: probe.value,
-            velocity: to_lab(flow.velocity),
-            pressure: viscosity * flow.pressure,
-        });
+        let probes = self
+            .case
+            .probes
+            .iter()
+            .zip(&answer.flow)
+            .map(|(probe, flow)| ProbeReport {
+                point: probe.value,
+                velocity: to_lab(flow.velocity),
+                pressure: viscosity * flow.pressure,
+            });
         let t = answer.timings;
         Report {
             bodies: vec![BodyReport {
@@ -195,10 +228,17 @@ impl<'a> Setting<'a> {
     fn problem_error(&self, error: ProblemError) -> SolveError {
         let at_shape = |error: &dyn std::fmt::Display| {
             let line = self.case.shape_of(self.body).line;
-            self.case.error(line, format!("shapes.{}: {error}", self.body.shape)).into()
+            self.case
+                .error(line, format!("shapes.{}: {error}", self.body.shape))
+                .into()
         };
         match error {
-            ProblemError::Flow(FlowError::TooNear { index, tolerance, least, .. }) => {
+            ProblemError::Flow(FlowError::TooNear {
+                index,
+                tolerance,
+                least,
+                ..
+            }) => {
                 let probe = &self.case.probes[index];
                 let message = format!(
                     "probes.points: {:?} is too near to the surface for a tolerance of {tolerance:e}: \

@@ -22,7 +22,9 @@ impl Frame {
 
     /// A point of the laboratory, in the body's frame.
     pub fn point_to_body(&self, point: Point3<f64>) -> Point3<f64> {
-        self.rotation.inverse_transform_vector(&(point - self.center)).into()
+        self.rotation
+            .inverse_transform_vector(&(point - self.center))
+            .into()
     }
 
     /// A vector of the laboratory, in the body's frame.
@@ -42,7 +44,12 @@ mod tests {
 
     #[test]
     fn there_and_back_for_every_direction_even_the_opposite_one() {
-        let axes = [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [1.0, 1.0, 1.0], [1e-9, 0.0, -1.0]];
+        let axes = [
+            [0.0, 0.0, 1.0],
+            [0.0, 0.0, -1.0],
+            [1.0, 1.0, 1.0],
+            [1e-9, 0.0, -1.0],
+        ];
         for axis in axes.map(|a| Unit::new_normalize(Vector3::from(a))) {
             let frame = Frame::new(Point3::new(1.0, 2.0, 3.0), axis);
             assert!((frame.vector_to_lab(Vector3::z()) - *axis).norm() < 1e-15);

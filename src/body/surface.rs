@@ -69,7 +69,11 @@ impl SurfaceModes {
                 let value = f(Vector3::new(node.r * cos, node.r * sin, node.z));
                 // `max` would pass over a NaN.
                 let magnitude = value.norm();
-                largest = if magnitude.is_nan() { f64::INFINITY } else { largest.max(magnitude) };
+                largest = if magnitude.is_nan() {
+                    f64::INFINITY
+                } else {
+                    largest.max(magnitude)
+                };
                 rings[0][l] = (value.x * cos + value.y * sin).into();
                 rings[1][l] = (value.y * cos - value.x * sin).into();
                 rings[2][l] = value.z.into();

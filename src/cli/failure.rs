@@ -32,7 +32,7 @@ impl From<SolveError> for Failure {
     fn from(error: SolveError) -> Self {
         let line = error.to_string();
         match error {
-            SolveError::Case(_) | SolveError::NotBuilt => Self::Input(line),
+            SolveError::Case(_) => Self::Input(line),
             _ => Self::Other(line),
         }
     }

@@ -36,8 +36,8 @@ fn write_table(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
     let t = &report.timings;
     writeln!(
         out,
-        "seconds: assemble {:.3}, factor {:.3}, iterate {:.3}, evaluate {:.3}",
-        t.assemble, t.factor, t.iterate, t.evaluate
+        "seconds: assemble {:.3}, factor {:.3}, solve {:.3}, evaluate {:.3}, error estimate {:.3}",
+        t.assemble, t.factor, t.iterate, t.evaluate, t.estimate
     )
 }
 

@@ -18,7 +18,7 @@ use super::matrix::ModalMatrices;
 use super::rigid::{RigidMotion, Wrench};
 use super::surface::SurfaceModes;
 use crate::kernel::{CombinedField, DoubleLayer, LayerWeights, SingleLayer};
-use crate::progress::Progress;
+use crate::progress::{Progress, Silent};
 use crate::special::toroidal;
 
 /// The equation that is solved.
@@ -41,6 +41,24 @@ impl Formulation {
             Self::InteriorDoubleLayer => [1.0, 0.0],
         };
         LayerWeights { double, single }
+    }
+
+    /// The matrices of the equation for modes up to `n_max`.
+    ///
+    /// # Errors
+    /// If a quadrature rule is missing.
+    pub fn matrices(
+        self,
+        discretization: &Discretization,
+        n_max: usize,
+    ) -> Result<ModalMatrices, QuadratureError> {
+        assemble(
+            discretization,
+            self,
+            self.weights(discretization),
+            n_max,
+            &Silent,
+        )
     }
 }
 
@@ -152,7 +170,7 @@ impl DirichletSolver {
 }
 
 /// The matrices of a formulation.
-pub(crate) fn assemble(
+fn assemble(
     discretization: &Discretization,
     formulation: Formulation,
     weights: LayerWeights,

@@ -125,35 +125,3 @@ impl ModalFactors {
         }
     }
 }
-
-/// The potential of a density at the nodes: the matrices times its modes.
-pub fn apply(
-    matrices: &ModalMatrices,
-    discretization: &Discretization,
-    density: &SurfaceModes,
-) -> SurfaceModes {
-    let nodes = density.nodes();
-    let mut values = SurfaceModes::zero(matrices.modes() - 1, nodes);
-    let roots: Vec<f64> = discretization
-        .nodes()
-        .iter()
-        .map(|node| node.weight.sqrt())
-        .collect();
-    for n in 0..matrices.modes().min(density.modes()) {
-        let mut scaled = density.families(n).to_vec();
-        for component in scaled.chunks_mut(nodes) {
-            component
-                .iter_mut()
-                .zip(&roots)
-                .for_each(|(x, root)| *x *= root);
-        }
-        let product = matrices.transposed(n).transpose()
-            * MatRef::from_column_major_slice(&scaled, 3 * nodes, 2);
-        for (family, column) in values.families_mut(n).chunks_mut(3 * nodes).enumerate() {
-            for (k, x) in column.iter_mut().enumerate() {
-                *x = product[(k, family)] / roots[k % nodes];
-            }
-        }
-    }
-    values
-}

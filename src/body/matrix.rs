@@ -16,7 +16,23 @@ use rayon::prelude::*;
 
 use super::discretization::{Discretization, Node};
 use super::near::{NearNodes, NearRules};
-use crate::kernel::{Kernel, Modes, SourceRings, TargetRing, Workspace};
+use super::surface::SurfaceModes;
+use crate::kernel::{
+    DoubleLayer, Kernel, Modes, SingleLayer, SingleLayerTraction, SourceRings, TargetRing,
+    Workspace,
+};
+
+/// A layer potential on the surface, for viscosity 1 and as a principal value; kernels and signs as in [`kernel`](crate::kernel).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum LayerPotential {
+    /// The velocity of the single layer, $S$.
+    Single,
+    /// The velocity of the double layer, $D$.
+    Double,
+    /// The traction of the single layer, $T$.
+    SingleTraction,
+}
 
 /// The matrices of modes $0 \dots n_\text{max}$, transposed.
 ///
@@ -44,6 +60,28 @@ struct Buffers {
 }
 
 impl ModalMatrices {
+    /// The matrices of a layer potential, for modes up to `n_max`.
+    ///
+    /// # Errors
+    /// If a quadrature rule is missing.
+    pub fn of(
+        layer: LayerPotential,
+        discretization: &Discretization,
+        n_max: usize,
+    ) -> Result<Self, QuadratureError> {
+        match layer {
+            LayerPotential::Single => {
+                Self::assemble(discretization, &SingleLayer, 0.0, n_max, &|| ())
+            }
+            LayerPotential::Double => {
+                Self::assemble(discretization, &DoubleLayer, 0.0, n_max, &|| ())
+            }
+            LayerPotential::SingleTraction => {
+                Self::assemble(discretization, &SingleLayerTraction, 0.0, n_max, &|| ())
+            }
+        }
+    }
+
     /// The matrices of `identity` plus the layer potential of `kernel` (principal value), for modes up to `n_max`;
     /// `done` is called after each target node.
     pub(crate) fn assemble(
@@ -92,6 +130,31 @@ impl ModalMatrices {
             unknowns,
             rows,
         })
+    }
+
+    /// The operator applied to a density: its values at the nodes, in the modes that matrices and density share.
+    pub fn apply(&self, discretization: &Discretization, density: &SurfaceModes) -> SurfaceModes {
+        let nodes = discretization.nodes();
+        let roots: Vec<f64> = nodes.iter().map(|node| node.weight.sqrt()).collect();
+        let mut values = SurfaceModes::zero(self.modes - 1, nodes.len());
+        for n in 0..self.modes.min(density.modes()) {
+            let mut scaled = density.families(n).to_vec();
+            for component in scaled.chunks_mut(nodes.len()) {
+                (component.iter_mut().zip(&roots)).for_each(|(x, root)| *x *= root);
+            }
+            matmul(
+                MatMut::from_column_major_slice_mut(values.families_mut(n), self.unknowns, 2),
+                Accum::Replace,
+                self.transposed(n).transpose(),
+                MatRef::from_column_major_slice(&scaled, self.unknowns, 2),
+                1.0,
+                Par::Seq,
+            );
+            for component in values.families_mut(n).chunks_mut(nodes.len()) {
+                (component.iter_mut().zip(&roots)).for_each(|(x, root)| *x /= root);
+            }
+        }
+        values
     }
 
     /// Adds $\nu\langle\nu,\cdot\rangle$, the normal times the mean normal component: a matrix of rank one, in mode 0.

@@ -122,7 +122,8 @@ pub fn explain(message: &clap::Error) -> ExitCode {
         return ExitCode::SUCCESS;
     }
     let text = message.to_string();
-    let lines = text.lines().take_while(|line| !line.starts_with("Usage:"));
+    let hint = ["Usage:", "For more information"];
+    let lines = (text.lines()).take_while(|line| !hint.iter().any(|hint| line.starts_with(hint)));
     let words: Vec<&str> = lines.flat_map(str::split_whitespace).collect();
     let line = words.join(" ");
     let line = line.trim_start_matches("error: ");

@@ -12,7 +12,7 @@ use crate::progress::{Progress, Silent};
 pub const ROUNDING: f64 = 1e-12;
 
 /// The finest tolerance of the evaluation.
-const EVALUATION: f64 = 1e-14;
+const EVALUATION: f64 = 1e-16;
 
 /// Errors for every pair of panels and modes.
 #[derive(Clone, Debug, PartialEq)]

@@ -79,12 +79,12 @@ impl TimingTable {
         })
     }
 
-    /// The rows that exponents are fitted to: the larger half, where overheads count least.
+    /// The rows that exponents are fitted to: the larger half, where overheads count least, and at least four.
     pub fn fitted(&self) -> &[Timing] {
         let from = self
             .rows
             .len()
-            .saturating_sub(self.rows.len().div_ceil(2).max(3));
+            .saturating_sub(self.rows.len().div_ceil(2).max(4));
         &self.rows[from..]
     }
 
@@ -175,11 +175,11 @@ mod tests {
         };
         let mut table = TimingTable {
             order: 16,
-            rows: [1, 2, 10, 100, 1000, 10000].map(row).to_vec(),
+            rows: [1, 2, 10, 100, 1000, 10000, 20000].map(row).to_vec(),
             left_out: Vec::new(),
         };
         table.rows[0].seconds = [1e9; 4];
-        assert_eq!(table.fitted().len(), 3);
+        assert_eq!(table.fitted().len(), 4);
         let exponents = table.laws().map(|law| law.unwrap().exponent);
         for (found, exact) in exponents.into_iter().zip([1.0, 1.5, 2.0, 1.0]) {
             assert!((found - exact).abs() < 1e-12);

@@ -38,6 +38,7 @@ fn heat_map(canvas: &Canvas<'_>, corner: (i32, i32), table: &ErrorTable) -> Resu
     let left = |i: i32| corner.0 + size.0 * i / columns;
     let bottom = |j: i32| corner.1 + size.1 - size.1 * j / rows;
     let centre = (HPos::Center, VPos::Center);
+    let height = (f64::from(size.0) / f64::from(columns) * 0.24).clamp(7.0, 11.0);
     for (k, (_, _, errors)) in table.entries().enumerate() {
         let (i, j) = (k as i32 / rows, k as i32 % rows);
         let cell = [(left(i), bottom(j + 1)), (left(i + 1), bottom(j))];
@@ -50,7 +51,7 @@ fn heat_map(canvas: &Canvas<'_>, corner: (i32, i32), table: &ErrorTable) -> Resu
         let text = errors.map_or("–".into(), |e| {
             format!("{:.0e}", e.relative).replace('-', "−")
         });
-        write(canvas, &text, middle, 10.5, t.map_or(BLACK, ink), centre)?;
+        write(canvas, &text, middle, height, t.map_or(BLACK, ink), centre)?;
     }
     for (i, panels) in (0..).zip(&table.panels) {
         let at = ((left(i) + left(i + 1)) / 2, corner.1 + size.1 + 8);

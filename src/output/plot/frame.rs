@@ -7,7 +7,7 @@ use super::colour::GRID;
 use super::{Canvas, PlotError, failed, write, write_upwards};
 
 /// Margins of the frame in its diagram: left, top, right, bottom.
-const MARGIN: [i32; 4] = [76, 44, 148, 58];
+const MARGIN: [i32; 4] = [76, 44, 168, 58];
 
 /// One axis: the range of its logarithm, its ticks with labels, its name.
 pub struct Axis {

@@ -21,7 +21,7 @@ pub struct PlotError(String);
 type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// Width and height of one diagram with its labels, in pixels.
-const DIAGRAM: (i32, i32) = (620, 440);
+const DIAGRAM: (i32, i32) = (640, 440);
 
 /// Draws diagrams in rows and columns on a white ground; `draw` gets the canvas and the corner of each.
 fn diagrams(

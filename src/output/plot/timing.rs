@@ -25,6 +25,7 @@ fn diagram(canvas: &Canvas<'_>, corner: (i32, i32), table: &TimingTable) -> Resu
     );
     let y = decades(seconds(), "wall-clock time / s");
     let frame = Frame::new(canvas, corner, &title, x, y)?;
+    frame.legend(0, None, "stage, fit T ∝ N^α")?;
     let laws = table.laws();
     for (k, (name, law)) in STAGES.iter().zip(laws).enumerate() {
         let style = Style {
@@ -38,11 +39,8 @@ fn diagram(canvas: &Canvas<'_>, corner: (i32, i32), table: &TimingTable) -> Resu
             frame.dashed(at(first.points), at(last.points), style.colour)?;
         }
         frame.curve(&curve.collect::<Vec<_>>(), &style)?;
-        frame.legend(2 * k, Some(&style), name)?;
-        if let Some(law) = law {
-            let text = format!("      T ∝ N^{:.2}", law.exponent);
-            frame.legend(2 * k + 1, None, &text)?;
-        }
+        let exponent = law.map_or(String::new(), |law| format!(", α = {:.2}", law.exponent));
+        frame.legend(k + 1, Some(&style), &format!("{name}{exponent}"))?;
     }
     Ok(())
 }

@@ -8,3 +8,4 @@ pub mod output;
 pub mod progress;
 pub mod solve;
 pub mod special;
+pub mod study;

@@ -98,6 +98,13 @@ impl SurfaceModes {
         Sampled { modes, largest }
     }
 
+    /// The same field without the modes above `n_max`.
+    pub fn truncated(mut self, n_max: usize) -> Self {
+        self.modes = self.modes.min(n_max + 1);
+        self.values.truncate(self.modes * 6 * self.nodes);
+        self
+    }
+
     /// Modes, counting the zeroth.
     pub fn modes(&self) -> usize {
         self.modes

@@ -31,6 +31,13 @@ A first case, the drag of a sphere (the force is 6 pi in z):
   [probes]
   points = [[0.0, 0.0, 2.0]]";
 
+const CONVERGE_NOTE: &str = "\
+The study: a spheroid 0.5 x 1, boundary data from five random Stokeslets inside,
+errors on a grid outside, everything randomly rotated. Full: 2 to 30 panels, modes
+up to 10 to 150, a few minutes and 5 GB; quick: up to 12 panels and 80 modes.
+Tables go to stdout; convergence.svg, convergence.csv, timing.svg and timing.csv
+to the folder, once all is done.";
+
 /// Stokes flow around axisymmetric bodies, with an error that is checked.
 #[derive(Debug, Parser)]
 #[command(name = "axistokes", version, after_help = EXAMPLES)]
@@ -51,6 +58,7 @@ pub enum Command {
     #[command(after_help = SOLVE_EXAMPLE)]
     Solve(Solve),
     /// Repeat the convergence study: errors over panels and modes, time over unknowns.
+    #[command(after_help = CONVERGE_NOTE)]
     Converge(Converge),
     /// Advance the bodies of a case in time (not built yet).
     #[command(hide = true)]
@@ -75,12 +83,30 @@ pub struct Solve {
 /// Arguments of `converge`.
 #[derive(Args, Debug)]
 pub struct Converge {
-    /// Folder for tables and plots, made if it does not exist.
+    /// Folder for convergence.svg, timing.svg and the same numbers as CSV; made if it does not exist.
     #[arg(long, value_name = "DIR", default_value = "convergence")]
     pub output: PathBuf,
     /// Few resolutions only: seconds instead of minutes.
     #[arg(long)]
     pub quick: bool,
+    /// Nodes per panel, 10 or 16; both if not given.
+    #[arg(long, value_name = "NODES", value_parser = order)]
+    pub order: Option<usize>,
+    /// What the random Stokeslets and rotation come from.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// For tests: as few resolutions as show convergence.
+    #[arg(long, hide = true)]
+    pub tiny: bool,
+}
+
+/// Nodes per panel for which there are quadrature rules.
+fn order(text: &str) -> Result<usize, String> {
+    match text {
+        "10" => Ok(10),
+        "16" => Ok(16),
+        _ => Err("expected 10 or 16".into()),
+    }
 }
 
 /// Prints help or version on stdout; an error of usage as one line on stderr.
@@ -96,7 +122,8 @@ pub fn explain(message: &clap::Error) -> ExitCode {
         return ExitCode::SUCCESS;
     }
     let text = message.to_string();
-    let lines = text.lines().take_while(|line| !line.starts_with("Usage:"));
+    let hint = ["Usage:", "For more information"];
+    let lines = (text.lines()).take_while(|line| !hint.iter().any(|hint| line.starts_with(hint)));
     let words: Vec<&str> = lines.flat_map(str::split_whitespace).collect();
     let line = words.join(" ");
     let line = line.trim_start_matches("error: ");

@@ -1,6 +1,8 @@
 //! Why the program ends badly, and its exit status.
 
+use axistokes::output::plot::PlotError;
 use axistokes::solve::SolveError;
+use axistokes::study::StudyError;
 use std::process::ExitCode;
 
 /// Why a command failed.
@@ -35,5 +37,17 @@ impl From<SolveError> for Failure {
             SolveError::Case(_) => Self::Input(line),
             _ => Self::Other(line),
         }
+    }
+}
+
+impl From<StudyError> for Failure {
+    fn from(error: StudyError) -> Self {
+        Self::Other(error.to_string())
+    }
+}
+
+impl From<PlotError> for Failure {
+    fn from(error: PlotError) -> Self {
+        Self::Other(error.to_string())
     }
 }

@@ -22,6 +22,8 @@
 //! Near the singularity the modes come from toroidal functions, without cancellation ([`moments`]);
 //! for well-separated pairs from one FFT per four entries ([`fourier`]).
 
+#[doc(hidden)]
+pub mod bench;
 mod combined;
 mod direct;
 mod double_layer;

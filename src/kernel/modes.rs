@@ -93,6 +93,8 @@ const FAR: f64 = 0.7;
 #[derive(Debug)]
 pub(crate) struct Modes {
     n_max: usize,
+    /// $\chi - 1$ from which on the FFT takes over.
+    far: f64,
     ladder: Ladder,
     fourier: Fourier,
 }
@@ -115,8 +117,14 @@ pub(crate) struct Workspace {
 
 impl Modes {
     pub fn new(n_max: usize) -> Self {
+        Self::with_far(n_max, FAR)
+    }
+
+    /// The same with the FFT from another separation on; it resolves pairs from [`FAR`] on.
+    pub fn with_far(n_max: usize, far: f64) -> Self {
         Self {
             n_max,
+            far,
             ladder: Ladder::new(n_max + 1),
             fourier: Fourier::new(n_max, FAR),
         }
@@ -135,7 +143,7 @@ impl Modes {
         sources: &SourceRings,
         workspace: &mut Workspace,
     ) {
-        let near = workspace.arrange(target, sources);
+        let near = workspace.arrange(target, sources, self.far);
         workspace.stride = padded(sources.len());
         workspace
             .block
@@ -153,17 +161,17 @@ impl Modes {
 
 impl Workspace {
     /// Puts the near pairs first and packs what their registers need; returns how many there are.
-    fn arrange(&mut self, target: TargetRing, sources: &SourceRings) -> usize {
+    fn arrange(&mut self, target: TargetRing, sources: &SourceRings, far: f64) -> usize {
         let h = |j: usize| {
             let (a, b) = (sources.a[j], sources.b[j]);
             (a * a + b * b) / (2.0 * target.r * sources.r[j])
         };
         self.order.clear();
         self.order
-            .extend((0..sources.len()).filter(|&j| h(j) < FAR));
+            .extend((0..sources.len()).filter(|&j| h(j) < far));
         let near = self.order.len();
         self.order
-            .extend((0..sources.len()).filter(|&j| h(j) >= FAR));
+            .extend((0..sources.len()).filter(|&j| h(j) >= far));
         for buffer in &mut self.packed {
             buffer.clear();
         }

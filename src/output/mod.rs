@@ -1,6 +1,8 @@
-//! What an answer looks like: as JSON and as a table for people.
+//! What an answer looks like: as JSON, as tables for people, as CSV and as plots.
 
+pub mod plot;
 mod report;
+pub mod study;
 mod table;
 
 pub use report::{BodyReport, Discretization, KnownFlowReport, ProbeReport, Report, Timings};

@@ -1,22 +1,24 @@
 //! The body's frame and the laboratory's.
 
-use nalgebra::{Point3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Point3, Rotation3, Unit, Vector3};
 
 /// Where a body is: its centre and the direction of its symmetry axis, in the laboratory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     center: Point3<f64>,
-    rotation: UnitQuaternion<f64>,
+    rotation: Rotation3<f64>,
 }
 
 impl Frame {
     /// The frame with origin `center` whose `z` axis is `axis`.
     pub fn new(center: Point3<f64>, axis: Unit<Vector3<f64>>) -> Self {
-        // Opposite directions have no shortest rotation: turn about x then.
-        let rotation = UnitQuaternion::rotation_between_axis(&Vector3::z_axis(), &axis)
-            .unwrap_or_else(|| {
-                UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI)
-            });
+        // An orthonormal basis without cancellation for any direction (Duff et al. 2017).
+        let sign = 1f64.copysign(axis.z);
+        let a = -1.0 / (sign + axis.z);
+        let b = axis.x * axis.y * a;
+        let first = Vector3::new(1.0 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x);
+        let second = Vector3::new(b, sign + axis.y * axis.y * a, -axis.y);
+        let rotation = Rotation3::from_basis_unchecked(&[first, second, *axis]);
         Self { center, rotation }
     }
 

@@ -62,9 +62,12 @@ impl SurfaceModes {
         let fft: Arc<dyn Fft<f64>> = FftPlanner::new().plan_fft_forward(count);
         let mut modes = Self::zero(n_max, nodes.len());
         let mut largest = 0.0f64;
-        let mut rings = vec![vec![Complex64::default(); count]; 3];
+        let mut rings = [(); 3].map(|()| vec![Complex64::default(); count]);
         for (k, node) in nodes.iter().enumerate() {
-            for l in 0..count {
+            let [radial, azimuthal, axial] = &mut rings;
+            for (l, ((radial, azimuthal), axial)) in
+                radial.iter_mut().zip(azimuthal).zip(axial).enumerate()
+            {
                 let (sin, cos) = (2.0 * PI * l as f64 / count as f64).sin_cos();
                 let value = f(Vector3::new(node.r * cos, node.r * sin, node.z));
                 // `max` would pass over a NaN.
@@ -74,18 +77,16 @@ impl SurfaceModes {
                 } else {
                     largest.max(magnitude)
                 };
-                rings[0][l] = (value.x * cos + value.y * sin).into();
-                rings[1][l] = (value.y * cos - value.x * sin).into();
-                rings[2][l] = value.z.into();
+                *radial = (value.x * cos + value.y * sin).into();
+                *azimuthal = (value.y * cos - value.x * sin).into();
+                *axial = value.z.into();
             }
             for (j, ring) in rings.iter_mut().enumerate() {
                 fft.process(ring);
-                for (n, c) in ring.iter().enumerate().take(count / 2) {
+                for (n, c) in ring.iter().enumerate().take(n_max + 1) {
                     let scale = if n == 0 { 1.0 } else { 2.0 } / count as f64;
                     let (cos, sin) = (scale * c.re, -scale * c.im);
-                    if n > n_max {
-                        break;
-                    } else if j == 1 {
+                    if j == 1 {
                         modes.component_mut(n, 0, j)[k] = sin;
                         modes.component_mut(n, 1, j)[k] = -cos;
                     } else {

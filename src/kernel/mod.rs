@@ -32,6 +32,7 @@ mod modes;
 mod moments;
 mod pair;
 mod pressure;
+mod rings;
 mod single_layer;
 mod stokeslet;
 #[cfg(test)]
@@ -44,6 +45,7 @@ pub use direct::{FlowAt, LayerWeights};
 pub(crate) use double_layer::DoubleLayer;
 pub(crate) use modes::{Kernel, Modes, SourceRings, TargetRing, Workspace};
 pub(crate) use pressure::{DoubleLayerPressure, SingleLayerPressure};
+pub use rings::{Ring, RingKernel};
 pub(crate) use single_layer::SingleLayer;
 pub use stokeslet::Stokeslet;
 pub(crate) use traction::SingleLayerTraction;

@@ -68,7 +68,7 @@ fn worst(table: &str, n_max: usize) -> [(f64, String); 5] {
         for ((values, scale), worst) in computed.iter().zip(scales).zip(&mut worst) {
             for (k, (value, exact)) in values.iter().zip(&mut exact).enumerate() {
                 let error = (value - exact).abs() * scale;
-                if !(error <= worst.0) {
+                if error.is_nan() || error > worst.0 {
                     *worst = (
                         error,
                         format!(

@@ -77,16 +77,20 @@ impl ErrorTable {
     /// The order in panels that each row shows against the one before, with the most modes; none at rounding.
     pub fn observed_orders(&self) -> Vec<Option<f64>> {
         let last = |row: &Vec<Option<Errors>>| row.last().copied().flatten();
-        let mut orders = vec![None; self.rows.len()];
-        for k in 1..self.rows.len() {
-            if let (Some(before), Some(after)) = (last(&self.rows[k - 1]), last(&self.rows[k]))
-                && after.absolute > ROUNDING
-            {
-                let ratio = self.panels[k] as f64 / self.panels[k - 1] as f64;
-                orders[k] = Some((before.absolute / after.absolute).ln() / ratio.ln());
-            }
-        }
-        orders
+        let steps = self
+            .rows
+            .windows(2)
+            .zip(self.panels.windows(2))
+            .map(|(rows, panels)| {
+                let (before, after) = (last(&rows[0])?, last(&rows[1])?);
+                let ratio = panels[1] as f64 / panels[0] as f64;
+                (after.absolute > ROUNDING)
+                    .then(|| (before.absolute / after.absolute).ln() / ratio.ln())
+            });
+        std::iter::once(None)
+            .chain(steps)
+            .take(self.rows.len())
+            .collect()
     }
 }
 
@@ -109,7 +113,7 @@ fn row(
 /// The errors with modes up to `n_max` only.
 fn errors(setup: &Setup, solver: &DirichletSolver, n_max: usize) -> Result<Errors, StudyError> {
     let flow = |x| setup.velocity_on_body(x);
-    let (data, _) = SurfaceModes::sample(solver.discretization(), n_max, flow);
+    let data = SurfaceModes::sample(solver.discretization(), n_max, flow).modes;
     let density = solver.solve(&data).truncated(n_max);
     let targets = setup.targets_of_body();
     let flow = solver.flow(&density);

@@ -109,7 +109,7 @@ fn row(
 /// The errors with modes up to `n_max` only.
 fn errors(setup: &Setup, solver: &DirichletSolver, n_max: usize) -> Result<Errors, StudyError> {
     let flow = |x| setup.velocity_on_body(x);
-    let (data, _) = SurfaceModes::sample(solver.discretization(), n_max, flow);
+    let data = SurfaceModes::sample(solver.discretization(), n_max, flow).modes;
     let density = solver.solve(&data).truncated(n_max);
     let targets = setup.targets_of_body();
     let flow = solver.flow(&density);

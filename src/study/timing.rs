@@ -114,7 +114,7 @@ impl Timing {
             stages.push(solver.seconds());
         }
         let flow = |x| setup.velocity_on_body(x);
-        let (data, _) = SurfaceModes::sample(solver.discretization(), modes, flow);
+        let data = SurfaceModes::sample(solver.discretization(), modes, flow).modes;
         let (density, solve) = repeated(|| solver.solve(&data));
         let targets = setup.targets_of_body();
         let targets: Vec<Point3<f64>> = targets.iter().map(|x| x * TARGETS_SCALED).collect();

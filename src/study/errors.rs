@@ -11,7 +11,7 @@ use crate::progress::{Progress, Silent};
 /// Errors at or below this are rounding as much as discretisation, and say nothing about the order of convergence.
 pub const ROUNDING: f64 = 1e-12;
 
-/// The finest tolerance of the evaluation.
+/// The finest tolerance of the evaluation: far below rounding, so that what is measured is the density's error.
 const EVALUATION: f64 = 1e-16;
 
 /// Errors for every pair of panels and modes.
@@ -76,17 +76,14 @@ impl ErrorTable {
 
     /// The order in panels that each row shows against the one before, with the most modes; none at rounding.
     pub fn observed_orders(&self) -> Vec<Option<f64>> {
-        let last = |row: &Vec<Option<Errors>>| row.last().copied().flatten();
-        let mut orders = vec![None; self.rows.len()];
-        for k in 1..self.rows.len() {
-            if let (Some(before), Some(after)) = (last(&self.rows[k - 1]), last(&self.rows[k]))
-                && after.absolute > ROUNDING
-            {
-                let ratio = self.panels[k] as f64 / self.panels[k - 1] as f64;
-                orders[k] = Some((before.absolute / after.absolute).ln() / ratio.ln());
-            }
-        }
-        orders
+        let last = |k: usize| self.rows[k].last().copied().flatten();
+        let order = |k: usize| {
+            let (before, after) = (last(k.checked_sub(1)?)?, last(k)?);
+            let ratio = self.panels[k] as f64 / self.panels[k - 1] as f64;
+            (after.absolute > ROUNDING)
+                .then(|| (before.absolute / after.absolute).ln() / ratio.ln())
+        };
+        (0..self.rows.len()).map(order).collect()
     }
 }
 

@@ -11,7 +11,7 @@ use crate::progress::{Progress, Silent};
 /// Errors at or below this are rounding as much as discretisation, and say nothing about the order of convergence.
 pub const ROUNDING: f64 = 1e-12;
 
-/// The finest tolerance of the evaluation.
+/// The finest tolerance of the evaluation: far below rounding, so that what is measured is the density's error.
 const EVALUATION: f64 = 1e-16;
 
 /// Errors for every pair of panels and modes.
@@ -76,21 +76,14 @@ impl ErrorTable {
 
     /// The order in panels that each row shows against the one before, with the most modes; none at rounding.
     pub fn observed_orders(&self) -> Vec<Option<f64>> {
-        let last = |row: &Vec<Option<Errors>>| row.last().copied().flatten();
-        let steps = self
-            .rows
-            .windows(2)
-            .zip(self.panels.windows(2))
-            .map(|(rows, panels)| {
-                let (before, after) = (last(&rows[0])?, last(&rows[1])?);
-                let ratio = panels[1] as f64 / panels[0] as f64;
-                (after.absolute > ROUNDING)
-                    .then(|| (before.absolute / after.absolute).ln() / ratio.ln())
-            });
-        std::iter::once(None)
-            .chain(steps)
-            .take(self.rows.len())
-            .collect()
+        let last = |k: usize| self.rows[k].last().copied().flatten();
+        let order = |k: usize| {
+            let (before, after) = (last(k.checked_sub(1)?)?, last(k)?);
+            let ratio = self.panels[k] as f64 / self.panels[k - 1] as f64;
+            (after.absolute > ROUNDING)
+                .then(|| (before.absolute / after.absolute).ln() / ratio.ln())
+        };
+        (0..self.rows.len()).map(order).collect()
     }
 }
 

@@ -23,8 +23,10 @@ pub struct Flow<'a> {
     discretization: &'a Discretization,
     density: &'a SurfaceModes,
     weights: LayerWeights,
+    /// The largest coefficient of a mode.
+    largest: f64,
     /// Logarithm of each mode's largest coefficient relative to the largest of all.
-    decay: Vec<f64>,
+    mode_decay: Vec<f64>,
 }
 
 /// Why a flow cannot be evaluated.
@@ -60,7 +62,10 @@ pub enum FlowError {
 const LEVELS: u32 = 4;
 
 /// Natural logarithm of what the rules' errors exceed the bare powers by: the kernels are large near the surface.
-const MARGIN: f64 = 5.0;
+const MARGIN: f64 = 7.0;
+
+/// Natural logarithm of how far below the density's last coefficients the quadrature's error is worth pushing.
+const BELOW_LEFT_OUT: f64 = 21.0;
 
 impl<'a> Flow<'a> {
     /// The flow of the layer potentials of `density`, weighted.
@@ -71,29 +76,36 @@ impl<'a> Flow<'a> {
     ) -> Self {
         let amplitudes: Vec<f64> = (0..density.modes()).map(|n| density.amplitude(n)).collect();
         let largest = amplitudes.iter().fold(f64::MIN_POSITIVE, |a, &b| a.max(b));
-        let decay = amplitudes
-            .iter()
-            .map(|a| (a / largest).max(1e-300).ln())
-            .collect();
         Self {
             discretization,
             density,
             weights,
-            decay,
+            largest,
+            mode_decay: amplitudes.iter().map(|&a| log_ratio(a, largest)).collect(),
         }
     }
 
-    /// Velocity and pressure at every target, with an error of the quadrature below `tolerance` relative to the density.
+    /// Velocity and pressure at every target, with an error of the quadrature below `tolerance` relative to the density, or
+    /// well below what the density's own expansion leaves out, if that is all there is to be had.
     ///
     /// # Errors
     /// [`FlowError::TooNear`] for a target that the finest resampling does not resolve.
     pub fn at(&self, targets: &[Point3<f64>], tolerance: f64) -> Result<Vec<FlowAt>, FlowError> {
+        let amplitudes = legendre_amplitudes(self.discretization, self.density)?;
+        let panel_decay: Vec<f64> = amplitudes
+            .into_iter()
+            .map(|a| log_ratio(a, self.largest))
+            .collect();
+        let wanted = -tolerance.ln() + MARGIN;
+        let enough = wanted.min(self.digits_of_density(&panel_decay));
         let mut by_level: Vec<Vec<usize>> = vec![Vec::new(); LEVELS as usize];
         for (index, point) in targets.iter().enumerate() {
             if !point.iter().all(|x| x.is_finite()) {
                 return Err(FlowError::NotFinite { index });
             }
-            let level = (0..LEVELS).find(|&l| self.resolves(l, point, tolerance));
+            let resolving =
+                |digits: f64| (0..LEVELS).find(|&l| self.resolves(l, point, &panel_decay, digits));
+            let level = resolving(wanted).or_else(|| resolving(enough));
             let Some(level) = level else {
                 return Err(FlowError::TooNear {
                     index,
@@ -126,11 +138,18 @@ impl<'a> Flow<'a> {
         azimuths(self.density.modes().max(16)) << level
     }
 
-    /// Whether both rules of a level are good to the tolerance at a target.
-    fn resolves(&self, level: u32, target: &Point3<f64>, tolerance: f64) -> bool {
-        let digits = -tolerance.ln() + MARGIN;
+    /// Digits (natural logarithm) beyond which the density's own expansion leaves nothing to resolve.
+    fn digits_of_density(&self, panel_decay: &[f64]) -> f64 {
         let order = self.discretization.order();
-        let far = (digits / (2 * order) as f64).exp();
+        let ends = panel_decay
+            .chunks(order)
+            .map(|c| c[order - 1].max(c[order - 2]));
+        BELOW_LEFT_OUT - ends.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Whether both rules of a level are good to so many digits (natural logarithm) at a target.
+    fn resolves(&self, level: u32, target: &Point3<f64>, panel_decay: &[f64], digits: f64) -> bool {
+        let order = self.discretization.order();
         let (r, z) = (target.x.hypot(target.y), target.z);
         let count = self.azimuths(level) as f64;
         let parts = 1usize << level;
@@ -139,7 +158,7 @@ impl<'a> Flow<'a> {
                 let h = ((r - node.r).powi(2) + (z - node.z).powi(2)) / (2.0 * r * node.r);
                 let xi = 2.0 * (0.5 * h).sqrt().asinh();
                 // Mode m of the density meets mode count - m of the kernel.
-                (self.decay.iter().enumerate())
+                (self.mode_decay.iter().enumerate())
                     .all(|(m, decay)| decay - (count - m as f64) * xi <= -digits)
             });
             let whole = self.discretization.panel(panel);
@@ -149,7 +168,16 @@ impl<'a> Flow<'a> {
                 let point = self.discretization.curve().point(s);
                 [point.r, point.z]
             };
-            around && (0..parts).all(|k| bernstein([r, z], [end(k), end(k + 1)], length) >= far)
+            let decay = &panel_decay[panel * order..][..order];
+            let along = |k: usize| {
+                let log_rho = bernstein([r, z], [end(k), end(k + 1)], length).ln();
+                // Degree k of the density, k / parts on a part, leaves 2 order - k to the kernel.
+                (decay.iter().enumerate()).all(|(k, decay)| {
+                    let left = (2 * order) as f64 - k as f64 / parts as f64;
+                    decay - left * log_rho <= -digits
+                })
+            };
+            around && (0..parts).all(along)
         })
     }
 
@@ -245,4 +273,29 @@ impl<'a> Flow<'a> {
             };
         }
     }
+}
+
+/// Logarithm of an amplitude relative to the largest.
+fn log_ratio(amplitude: f64, largest: f64) -> f64 {
+    (amplitude / largest).max(1e-300).ln()
+}
+
+/// Panel after panel, the largest Legendre coefficients of the density along the panel, over all modes and components.
+fn legendre_amplitudes(
+    discretization: &Discretization,
+    density: &SurfaceModes,
+) -> Result<Vec<f64>, QuadratureError> {
+    let order = discretization.order();
+    let mut amplitudes = vec![0.0f64; discretization.nodes().len()];
+    let components =
+        (0..density.modes()).flat_map(|n| (0..6).map(move |k| density.component(n, k / 3, k % 3)));
+    for component in components {
+        for (values, amplitudes) in component.chunks(order).zip(amplitudes.chunks_mut(order)) {
+            let coefficients = discretization.basis().coefficients(values)?;
+            for (amplitude, coefficient) in amplitudes.iter_mut().zip(coefficients) {
+                *amplitude = amplitude.max(coefficient.abs());
+            }
+        }
+    }
+    Ok(amplitudes)
 }

@@ -1,7 +1,8 @@
 //! Modes of well-separated pairs: the trapezoidal rule in the azimuth, all modes by FFT.
 //!
-//! The kernels are analytic in $t$ up to $\lvert\mathrm{Im}\, t\rvert = \mathrm{acosh}\,\chi$, so with $N$ samples mode $n$ is off by
-//! $e^{-(N - n)\,\mathrm{acosh}\,\chi}$. Four real sequences share a complex transform: two even ones and two odd ones,
+//! The kernels are analytic in $t$ up to $\lvert\mathrm{Im}\, t\rvert = \mathrm{acosh}\,\chi$: mode $n$ is of the size of
+//! $e^{-n\,\mathrm{acosh}\,\chi}$, and with $N$ samples it is off by $e^{-(N - n)\,\mathrm{acosh}\,\chi}$. Modes below rounding are left zero,
+//! so the cost does not grow with the number of modes. Four real sequences share a complex transform: two even ones and two odd ones,
 //! told apart afterwards by symmetry.
 
 use std::f64::consts::PI;
@@ -19,6 +20,8 @@ use crate::special::lanes::{Lanes, padded};
 /// Samples and transforms for one number of modes.
 pub(crate) struct Fourier {
     n_max: usize,
+    /// The last mode above rounding, or `n_max`.
+    last: usize,
     /// Samples around the whole circle.
     count: usize,
     /// $1 - \cos t$ and $\sin t$ at the samples in $[0, \pi]$, padded.
@@ -52,7 +55,9 @@ impl Fourier {
     /// Samples for modes up to `n_max` of pairs with $\chi - 1 \ge$ `h`.
     pub fn new(n_max: usize, h: f64) -> Self {
         let decay = 2.0 * (0.5 * h).sqrt().asinh();
-        let least = n_max + (DIGITS / decay).ceil() as usize + 4;
+        let reach = (DIGITS / decay).ceil() as usize;
+        let last = reach.min(n_max);
+        let least = last + reach + 4;
         let count = (least..)
             .find(|&n| n % 4 == 0 && is_smooth(n))
             .unwrap_or(least);
@@ -60,6 +65,7 @@ impl Fourier {
         let t = |k: usize| 2.0 * PI * k as f64 / count as f64;
         Self {
             n_max,
+            last,
             count,
             c: (0..half)
                 .map(|k| 2.0 * (0.5 * t(k)).sin().powi(2))
@@ -79,7 +85,7 @@ impl Fourier {
         workspace: &mut Workspace,
     ) {
         let half = self.c.len();
-        workspace.samples.resize(K * half, 0.0);
+        workspace.samples.resize((K + 1) * half, 0.0);
         for register in 0..half / S::F64_LANES {
             let c = Lanes::load(simd, &self.c, register);
             let sin = Lanes::load(simd, &self.sin, register);
@@ -106,26 +112,35 @@ impl Fourier {
         let (count, half) = (self.count, self.c.len());
         sequence.resize(count, Complex64::default());
         scratch.resize(self.fft.get_inplace_scratch_len(), Complex64::default());
+        for n in self.last + 1..=self.n_max {
+            for k in 0..K {
+                out[(n * K + k) * stride] = 0.0;
+            }
+        }
         let of = |wanted: Parity| (0..K).filter(move |&k| parity[k] == wanted);
         let (mut even, mut odd) = (of(Parity::Even), of(Parity::Odd));
         let scale = PI / count as f64;
+        // The samples of an entry, or of one that vanishes.
+        samples.resize((K + 1) * half, 0.0);
+        let row = |entry: Option<usize>| &samples[entry.unwrap_or(K) * half..][..count / 2 + 1];
         loop {
             let [f1, f2] = [even.next(), even.next()];
             let [g1, g2] = [odd.next(), odd.next()];
             if f1.is_none() && g1.is_none() {
                 return;
             }
-            let at = |entry: Option<usize>, i: usize| entry.map_or(0.0, |k| samples[k * half + i]);
+            let (even1, even2, odd1, odd2) = (row(f1), row(f2), row(g1), row(g2));
             for i in 0..=count / 2 {
-                let f = Complex64::new(at(f1, i), at(f2, i));
-                let g = Complex64::new(at(g1, i), at(g2, i));
-                sequence[(count - i) % count] = f - g;
+                let f = Complex64::new(even1[i], even2[i]);
+                let g = Complex64::new(odd1[i], odd2[i]);
+                sequence[if i == 0 { 0 } else { count - i }] = f - g;
                 sequence[i] = f + g;
             }
             self.fft.process_with_scratch(sequence, scratch);
             // Z(n) = (F1 + G2) + i (F2 - G1), with F even and G odd in n.
-            for n in 0..=self.n_max {
-                let (plus, minus) = (sequence[n], sequence[(count - n) % count]);
+            for n in 0..=self.last {
+                let plus = sequence[n];
+                let minus = sequence[if n == 0 { 0 } else { count - n }];
                 let (sum, difference) = (plus + minus, plus - minus);
                 for (entry, value) in [
                     (f1, sum.re),

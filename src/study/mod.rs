@@ -47,7 +47,7 @@ pub enum StudyError {
 /// The spheroid in `panels` equal panels of `order` nodes.
 fn spheroid(panels: usize, order: usize) -> Result<Discretization, StudyError> {
     let curve = Arc::new(Spheroid::new(POLAR, EQUATORIAL)?);
-    let panels = Panels::uniform(&*curve, panels)?;
+    let panels = Panels::equal_arcs(&*curve, panels)?;
     Ok(Discretization::new(curve, panels, order)?)
 }
 

@@ -99,7 +99,7 @@ impl DirichletSolver {
         let assemble = start.elapsed().as_secs_f64();
         let start = std::time::Instant::now();
         progress.begin("factoring", matrices.modes());
-        let factors = ModalFactors::new(&matrices, &discretization, &|| progress.advance(1));
+        let factors = ModalFactors::new(matrices, &discretization, &|| progress.advance(1));
         let seconds = Seconds {
             assemble,
             factor: start.elapsed().as_secs_f64(),

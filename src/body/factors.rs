@@ -3,7 +3,7 @@
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::{factor, solve};
 use faer::perm::PermRef;
-use faer::{Mat, MatMut, MatRef, Par};
+use faer::{MatMut, MatRef, Par};
 use rayon::prelude::*;
 
 use super::discretization::Discretization;
@@ -18,42 +18,43 @@ pub struct ModalFactors {
     root_weights: Vec<f64>,
 }
 
-/// Both factors of one matrix, in its place, and the permutation of its rows.
+/// Both factors of one matrix, in its place column by column, and the permutation of its rows.
 #[derive(Clone, Debug)]
 struct Lu {
-    packed: Mat<f64>,
+    packed: Vec<f64>,
     forward: Vec<usize>,
     backward: Vec<usize>,
 }
 
 impl Lu {
-    fn new(matrix: MatRef<'_, f64>) -> Self {
-        let n = matrix.nrows();
-        let mut lu = Self {
-            packed: matrix.to_owned(),
-            forward: vec![0; n],
-            backward: vec![0; n],
-        };
+    /// Factors an `n` by `n` matrix given column by column.
+    fn new(mut packed: Vec<f64>, n: usize) -> Self {
+        let (mut forward, mut backward) = (vec![0; n], vec![0; n]);
         let scratch = factor::lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Default::default());
         factor::lu_in_place(
-            lu.packed.as_mut(),
-            &mut lu.forward,
-            &mut lu.backward,
+            MatMut::from_column_major_slice_mut(&mut packed, n, n),
+            &mut forward,
+            &mut backward,
             Par::Seq,
             MemStack::new(&mut MemBuffer::new(scratch)),
             Default::default(),
         );
-        lu
+        Self {
+            packed,
+            forward,
+            backward,
+        }
     }
 
     /// Solves with the transpose of the matrix that was factored.
     fn solve_transpose(&self, columns: MatMut<'_, f64>) {
-        let n = self.packed.nrows();
+        let n = self.forward.len();
+        let packed = MatRef::from_column_major_slice(&self.packed, n, n);
         let scratch =
             solve::solve_transpose_in_place_scratch::<usize, f64>(n, columns.ncols(), Par::Seq);
         solve::solve_transpose_in_place(
-            self.packed.as_ref(),
-            self.packed.as_ref(),
+            packed,
+            packed,
             PermRef::new_checked(&self.forward, &self.backward, n),
             columns,
             Par::Seq,
@@ -65,14 +66,16 @@ impl Lu {
 impl ModalFactors {
     /// Factors the matrices, one mode per task; `done` is called after each.
     pub(crate) fn new(
-        matrices: &ModalMatrices,
+        matrices: ModalMatrices,
         discretization: &Discretization,
         done: &(dyn Fn() + Sync),
     ) -> Self {
-        let modes = (0..matrices.modes())
+        let unknowns = matrices.unknowns();
+        let modes = matrices
+            .into_transposed_columns()
             .into_par_iter()
-            .map(|n| {
-                let lu = Lu::new(matrices.transposed(n));
+            .map(|columns| {
+                let lu = Lu::new(columns, unknowns);
                 done();
                 lu
             })
@@ -97,23 +100,21 @@ impl ModalFactors {
     pub fn solve(&self, data: &SurfaceModes) -> SurfaceModes {
         let nodes = data.nodes();
         let mut density = SurfaceModes::zero(self.count() - 1, nodes);
-        for n in 0..self.count().min(data.modes()) {
-            density.families_mut(n).copy_from_slice(data.families(n));
-        }
-        for n in 0..self.count().min(data.modes()) {
-            let columns = density.families_mut(n);
+        let shared = self
+            .modes
+            .par_iter()
+            .zip(density.par_families_mut())
+            .enumerate();
+        shared.take(data.modes()).for_each(|(n, (lu, columns))| {
+            columns.copy_from_slice(data.families(n));
             if columns.iter().all(|&x| x == 0.0) {
-                continue;
+                return;
             }
             self.scale(columns, |x, root| x * root);
             // The factors are the transposed matrix's.
-            self.modes[n].solve_transpose(MatMut::from_column_major_slice_mut(
-                columns,
-                3 * nodes,
-                2,
-            ));
+            lu.solve_transpose(MatMut::from_column_major_slice_mut(columns, 3 * nodes, 2));
             self.scale(columns, |x, root| x / root);
-        }
+        });
         density
     }
 

@@ -39,11 +39,13 @@ pub enum LayerPotential {
 /// Unknown $j N + k$ is component $j$ (radial, azimuthal, axial) at node $k$ of $N$.
 #[derive(Debug)]
 pub struct ModalMatrices {
-    modes: usize,
     unknowns: usize,
-    /// Row `i N + k` of mode `n` starts at `((i N + k) modes + n) unknowns`.
-    rows: Vec<f64>,
+    /// Mode after mode, the matrix row by row.
+    rows: Vec<Vec<f64>>,
 }
+
+/// The rows of one target: component `i` of mode `n` is number `3 n + i`.
+type TargetRows<'a> = Vec<&'a mut [f64]>;
 
 /// The sign with which entry $3 i + j$ of a kernel enters the matrix of the first family.
 const SIGN: [f64; 9] = [1.0, -1.0, 1.0, 1.0, 1.0, 1.0, 1.0, -1.0, 1.0];
@@ -92,52 +94,42 @@ impl ModalMatrices {
         done: &(dyn Fn() + Sync),
     ) -> Result<Self, QuadratureError> {
         let nodes = discretization.nodes().len();
-        let (modes, unknowns) = (n_max + 1, 3 * nodes);
-        let mut rows = vec![0.0; unknowns * modes * unknowns];
+        let unknowns = 3 * nodes;
+        // Not a clone of one: fresh zeroed memory is first touched where it is filled, in parallel.
+        let mut rows: Vec<Vec<f64>> = (0..=n_max)
+            .map(|_| vec![0.0; unknowns * unknowns])
+            .collect();
         let engine = Modes::new(n_max);
         let rules = NearRules::new(discretization.order())?;
-        let row_length = modes * unknowns;
-        let (radial, others) = rows.split_at_mut(nodes * row_length);
-        let (azimuthal, axial) = others.split_at_mut(nodes * row_length);
-        radial
-            .par_chunks_mut(row_length)
-            .zip(azimuthal.par_chunks_mut(row_length))
-            .zip(axial.par_chunks_mut(row_length))
-            .enumerate()
-            .try_for_each_init(
-                Buffers::default,
-                |buffers, (target, ((radial, azimuthal), axial))| {
-                    let mut rows = [radial, azimuthal, axial];
-                    buffers.fill_rows(
-                        discretization,
-                        kernel,
-                        &engine,
-                        &rules,
-                        target,
-                        &mut rows,
-                    )?;
-                    for (component, row) in rows.into_iter().enumerate() {
-                        for mode in row.chunks_mut(unknowns) {
-                            mode[component * nodes + target] += identity;
-                        }
-                    }
-                    done();
-                    Ok(())
-                },
-            )?;
-        Ok(Self {
-            modes,
-            unknowns,
-            rows,
-        })
+        // Target by target, its three rows of every mode.
+        let mut targets: Vec<TargetRows<'_>> = (0..nodes)
+            .map(|_| Vec::with_capacity(3 * (n_max + 1)))
+            .collect();
+        for matrix in &mut rows {
+            for (i, row) in matrix.chunks_mut(unknowns).enumerate() {
+                targets[i % nodes].push(row);
+            }
+        }
+        targets.into_par_iter().enumerate().try_for_each_init(
+            Buffers::default,
+            |buffers, (target, mut rows)| {
+                buffers.fill_rows(discretization, kernel, &engine, &rules, target, &mut rows)?;
+                for (k, row) in rows.iter_mut().enumerate() {
+                    row[k % 3 * nodes + target] += identity;
+                }
+                done();
+                Ok(())
+            },
+        )?;
+        Ok(Self { unknowns, rows })
     }
 
     /// The operator applied to a density: its values at the nodes, in the modes that matrices and density share.
     pub fn apply(&self, discretization: &Discretization, density: &SurfaceModes) -> SurfaceModes {
         let nodes = discretization.nodes();
         let roots: Vec<f64> = nodes.iter().map(|node| node.weight.sqrt()).collect();
-        let mut values = SurfaceModes::zero(self.modes - 1, nodes.len());
-        for n in 0..self.modes.min(density.modes()) {
+        let mut values = SurfaceModes::zero(self.modes() - 1, nodes.len());
+        for n in 0..self.modes().min(density.modes()) {
             let mut scaled = density.families(n).to_vec();
             for component in scaled.chunks_mut(nodes.len()) {
                 (component.iter_mut().zip(&roots)).for_each(|(x, root)| *x *= root);
@@ -167,9 +159,12 @@ impl ModalMatrices {
             _ => 0.0,
         };
         for i in 0..self.unknowns {
-            let first = i * self.modes * self.unknowns;
+            let first = i * self.unknowns;
             let left = normal(i / nodes.len(), &nodes[i % nodes.len()]);
-            for (j, entry) in self.rows[first..][..self.unknowns].iter_mut().enumerate() {
+            for (j, entry) in self.rows[0][first..][..self.unknowns]
+                .iter_mut()
+                .enumerate()
+            {
                 *entry += left * normal(j / nodes.len(), &nodes[j % nodes.len()]) / area;
             }
         }
@@ -177,7 +172,7 @@ impl ModalMatrices {
 
     /// Modes, counting the zeroth.
     pub fn modes(&self) -> usize {
-        self.modes
+        self.rows.len()
     }
 
     /// Unknowns of each mode: three per node.
@@ -187,15 +182,12 @@ impl ModalMatrices {
 
     /// The transposed matrix of mode `n`.
     pub fn transposed(&self, n: usize) -> MatRef<'_, f64> {
-        let stride = self.modes * self.unknowns;
-        let first = n * self.unknowns;
-        let last = (self.unknowns - 1) * stride + first + self.unknowns;
-        MatRef::from_column_major_slice_with_stride(
-            &self.rows[first..last],
-            self.unknowns,
-            self.unknowns,
-            stride,
-        )
+        MatRef::from_column_major_slice(&self.rows[n], self.unknowns, self.unknowns)
+    }
+
+    /// Mode after mode, the transposed matrix column by column.
+    pub(crate) fn into_transposed_columns(self) -> Vec<Vec<f64>> {
+        self.rows
     }
 }
 
@@ -207,7 +199,7 @@ impl Buffers {
         engine: &Modes,
         rules: &NearRules,
         index: usize,
-        rows: &mut [&mut [f64]; 3],
+        rows: &mut TargetRows<'_>,
     ) -> Result<(), QuadratureError> {
         let order = discretization.order();
         let nodes = discretization.nodes();
@@ -245,20 +237,25 @@ impl Buffers {
         Ok(())
     }
 
-    fn scatter_far(&self, nodes: &[Node], at: &Node, modes: usize, rows: &mut [&mut [f64]; 3]) {
+    fn scatter_far(&mut self, nodes: &[Node], at: &Node, modes: usize, rows: &mut TargetRows<'_>) {
         let Workspace {
             block,
             stride,
             order,
             ..
         } = &self.workspace;
+        self.weighted.clear();
+        self.weighted.extend(
+            order
+                .iter()
+                .map(|&source| (nodes[self.columns[source]].weight * at.weight).sqrt()),
+        );
         for n in 0..modes {
             for (k, sign) in SIGN.into_iter().enumerate() {
                 let entries = &block[(n * 9 + k) * stride..];
-                let row = &mut rows[k / 3][(3 * n + k % 3) * nodes.len()..][..nodes.len()];
-                for (&source, entry) in order.iter().zip(entries) {
-                    let column = self.columns[source];
-                    row[column] = sign * entry * (nodes[column].weight * at.weight).sqrt();
+                let row = &mut rows[3 * n + k / 3][k % 3 * nodes.len()..][..nodes.len()];
+                for ((&source, entry), weight) in order.iter().zip(entries).zip(&self.weighted) {
+                    row[self.columns[source]] = sign * entry * weight;
                 }
             }
         }
@@ -272,7 +269,7 @@ impl Buffers {
         modes: usize,
         first: usize,
         order: usize,
-        rows: &mut [&mut [f64]; 3],
+        rows: &mut TargetRows<'_>,
     ) {
         let Workspace {
             block,
@@ -306,7 +303,7 @@ impl Buffers {
         for n in 0..modes {
             for (k, sign) in SIGN.into_iter().enumerate() {
                 let from = &self.interpolated[(n * 9 + k) * order..][..order];
-                let to = &mut rows[k / 3][(3 * n + k % 3) * nodes.len() + first..][..order];
+                let to = &mut rows[3 * n + k / 3][k % 3 * nodes.len() + first..][..order];
                 for (to, from) in to.iter_mut().zip(from) {
                     *to = sign * from;
                 }

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use num_complex::Complex64;
+use rayon::slice::ParallelSliceMut;
 use rustfft::{Fft, FftPlanner};
 
 use super::discretization::Discretization;
@@ -129,6 +130,11 @@ impl SurfaceModes {
     /// Both families of mode `n`: the right-hand sides of that mode's system, one after the other.
     pub(crate) fn families(&self, n: usize) -> &[f64] {
         &self.values[6 * n * self.nodes..][..6 * self.nodes]
+    }
+
+    /// Both families of every mode.
+    pub(crate) fn par_families_mut(&mut self) -> rayon::slice::ChunksMut<'_, f64> {
+        self.values.par_chunks_mut(6 * self.nodes)
     }
 
     pub(crate) fn families_mut(&mut self, n: usize) -> &mut [f64] {

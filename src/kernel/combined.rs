@@ -21,17 +21,34 @@ impl Kernel<9> for CombinedField {
 
     #[inline(always)]
     fn mode<S: Simd>(&self, pair: &Pair<S>, m: &Moments<S>) -> [Lanes<S>; 9] {
-        let double = DoubleLayer.mode(pair, m);
-        let single = SingleLayer.mode(pair, m);
-        let eta = Lanes::splat(pair.r.0, self.eta);
-        std::array::from_fn(|k| eta.mul_add(single[k], double[k]))
+        weighted_sum(
+            DoubleLayer.mode(pair, m),
+            SingleLayer.mode(pair, m),
+            Lanes::splat(pair.r.0, self.eta),
+        )
     }
 
     #[inline(always)]
     fn sample<S: Simd>(&self, s: &Separation<S>) -> [Lanes<S>; 9] {
-        let double = DoubleLayer.sample(s);
-        let single = SingleLayer.sample(s);
-        let eta = Lanes::splat(s.inv.0, self.eta);
-        std::array::from_fn(|k| eta.mul_add(single[k], double[k]))
+        weighted_sum(
+            DoubleLayer.sample(s),
+            SingleLayer.sample(s),
+            Lanes::splat(s.inv.0, self.eta),
+        )
     }
+}
+
+/// `double + eta * single`. A plain loop: closures handed to the standard library would not be compiled for the instruction
+/// set that was chosen.
+#[inline(always)]
+fn weighted_sum<S: Simd>(
+    double: [Lanes<S>; 9],
+    single: [Lanes<S>; 9],
+    eta: Lanes<S>,
+) -> [Lanes<S>; 9] {
+    let mut sum = double;
+    for (sum, single) in sum.iter_mut().zip(&single) {
+        *sum = eta.mul_add(*single, *sum);
+    }
+    sum
 }

@@ -103,13 +103,14 @@ impl WithSimd for Sum<'_> {
         let (six, four) = (splat(6.0 * weights.double), splat(4.0 * weights.double));
         let (single, twice) = (splat(weights.single), splat(2.0 * weights.single));
         for i in 0..x.len() {
-            let at = |b: &[S::f64s]| Lanes(simd, b[i]);
-            let d = [target[0] - at(x), target[1] - at(y), target[2] - at(z)];
-            let f = [at(fx), at(fy), at(fz)];
-            let n = [at(nx), at(ny), at(nz)];
-            let dot = |a: &[Lanes<S>; 3], b: &[Lanes<S>; 3]| {
-                a[0].mul_add(b[0], a[1].mul_add(b[1], a[2] * b[2]))
-            };
+            let position = [Lanes(simd, x[i]), Lanes(simd, y[i]), Lanes(simd, z[i])];
+            let f = [Lanes(simd, fx[i]), Lanes(simd, fy[i]), Lanes(simd, fz[i])];
+            let n = [Lanes(simd, nx[i]), Lanes(simd, ny[i]), Lanes(simd, nz[i])];
+            let d = [
+                target[0] - position[0],
+                target[1] - position[1],
+                target[2] - position[2],
+            ];
             let inv2 = one / dot(&d, &d);
             let inv = inv2.sqrt();
             let inv3 = inv * inv2;
@@ -132,4 +133,9 @@ impl WithSimd for Sum<'_> {
             pressure: pressure.sum() * factor,
         }
     }
+}
+
+#[inline(always)]
+fn dot<S: Simd>(a: &[Lanes<S>; 3], b: &[Lanes<S>; 3]) -> Lanes<S> {
+    a[0].mul_add(b[0], a[1].mul_add(b[1], a[2] * b[2]))
 }

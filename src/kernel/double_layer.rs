@@ -43,6 +43,16 @@ pub(super) fn cubic_modes<S: Simd>(
     ]
 }
 
+/// `strength` times $\bar x_i \bar x_j$.
+#[inline(always)]
+pub(super) fn dyad<S: Simd>(strength: Lanes<S>, s: &Separation<S>) -> [Lanes<S>; 9] {
+    let mut entries = [strength; 9];
+    for (k, entry) in entries.iter_mut().enumerate() {
+        *entry = strength * s.x[k / 3] * s.xp[k % 3];
+    }
+    entries
+}
+
 impl Kernel<9> for DoubleLayer {
     const PARITY: [Parity; 9] = Parity::OF_VELOCITY;
 
@@ -57,6 +67,6 @@ impl Kernel<9> for DoubleLayer {
     fn sample<S: Simd>(&self, s: &Separation<S>) -> [Lanes<S>; 9] {
         let inv2 = s.inv * s.inv;
         let strength = (3.0 / (4.0 * PI)) * s.x_nu * s.inv * inv2 * inv2;
-        std::array::from_fn(|k| strength * s.x[k / 3] * s.xp[k % 3])
+        dyad(strength, s)
     }
 }

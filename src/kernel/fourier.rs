@@ -19,7 +19,6 @@ use crate::special::lanes::{Lanes, padded};
 
 /// Samples and transforms for one number of modes.
 pub(crate) struct Fourier {
-    n_max: usize,
     /// The last mode above rounding, or `n_max`.
     last: usize,
     /// Samples around the whole circle.
@@ -33,7 +32,7 @@ pub(crate) struct Fourier {
 impl fmt::Debug for Fourier {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Fourier")
-            .field("n_max", &self.n_max)
+            .field("last", &self.last)
             .field("count", &self.count)
             .finish()
     }
@@ -64,7 +63,6 @@ impl Fourier {
         let half = padded(count / 2 + 1);
         let t = |k: usize| 2.0 * PI * k as f64 / count as f64;
         Self {
-            n_max,
             last,
             count,
             c: (0..half)
@@ -90,10 +88,15 @@ impl Fourier {
             let c = Lanes::load(simd, &self.c, register);
             let sin = Lanes::load(simd, &self.sin, register);
             let entries = kernel.sample(&pair.separation(c, sin));
-            for (k, entry) in entries.into_iter().enumerate() {
+            for (k, entry) in entries.iter().enumerate() {
                 entry.store(&mut workspace.samples[k * half..(k + 1) * half], register);
             }
         }
+    }
+
+    /// The last mode that [`transform`](Self::transform) fills; all beyond are below rounding.
+    pub fn last(&self) -> usize {
+        self.last
     }
 
     /// Transforms the samples; mode `n` of entry `k` goes to `out[(n * K + k) * stride]`.
@@ -112,11 +115,6 @@ impl Fourier {
         let (count, half) = (self.count, self.c.len());
         sequence.resize(count, Complex64::default());
         scratch.resize(self.fft.get_inplace_scratch_len(), Complex64::default());
-        for n in self.last + 1..=self.n_max {
-            for k in 0..K {
-                out[(n * K + k) * stride] = 0.0;
-            }
-        }
         let of = |wanted: Parity| (0..K).filter(move |&k| parity[k] == wanted);
         let (mut even, mut odd) = (of(Parity::Even), of(Parity::Odd));
         let scale = PI / count as f64;

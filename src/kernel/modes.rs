@@ -239,17 +239,30 @@ impl<const K: usize, F: Kernel<K>> WithSimd for Evaluate<'_, K, F> {
         d.resize((modes.n_max + 2) * lanes, 0.0);
         let (q, d) = (S::as_mut_simd_f64s(q).0, S::as_mut_simd_f64s(d).0);
         for register in 0..near.div_ceil(lanes) {
-            let [rp, a, b, nu_r, nu_z, q0, d0] =
-                std::array::from_fn(|k| Lanes::load(simd, &packed[k], register));
+            let [rp, a, b, nu_r, nu_z, q0, d0] = [
+                Lanes::load(simd, &packed[0], register),
+                Lanes::load(simd, &packed[1], register),
+                Lanes::load(simd, &packed[2], register),
+                Lanes::load(simd, &packed[3], register),
+                Lanes::load(simd, &packed[4], register),
+                Lanes::load(simd, &packed[5], register),
+                Lanes::load(simd, &packed[6], register),
+            ];
             let pair = Pair::new(r, rp, a, b, nu_r, nu_z, mu_r, mu_z);
             let scale = modes.ladder.fill(simd, pair.h, q0, d0, q, d);
             let mut series = MomentSeries::new(&pair, q, d, scale);
             for n in 0..=modes.n_max {
                 let entries = kernel.mode(&pair, &series.next(n));
-                for (k, entry) in entries.into_iter().enumerate() {
+                for (k, entry) in entries.iter().enumerate() {
                     entry.store(&mut block[(n * K + k) * *stride..][..*stride], register);
                 }
             }
+        }
+        for entries in block
+            .chunks_mut(*stride)
+            .skip((modes.fourier.last() + 1) * K)
+        {
+            entries[near..].fill(0.0);
         }
         for (column, &j) in order.iter().enumerate().skip(near) {
             let pair = Pair::new(

@@ -24,19 +24,20 @@ impl Kernel<3> for SingleLayerPressure {
     #[inline(always)]
     fn mode<S: Simd>(&self, pair: &Pair<S>, m: &Moments<S>) -> [Lanes<S>; 3] {
         let factor = 1.0 / (4.0 * PI);
-        let e1 = m.e1 * pair.inv_rho2;
+        let e0 = factor * m.e0;
+        let e1 = factor * m.e1;
+        let e1_over_rho2 = e1 * pair.inv_rho2;
         [
-            pair.a * e1 - 0.5 * pair.inv_rp * (m.e0 - m.e1),
-            m.n * pair.inv_rp * m.e0,
-            pair.b * e1,
+            pair.a * e1_over_rho2 - 0.5 * pair.inv_rp * (e0 - e1),
+            m.n * pair.inv_rp * e0,
+            pair.b * e1_over_rho2,
         ]
-        .map(|x| factor * x)
     }
 
     #[inline(always)]
     fn sample<S: Simd>(&self, s: &Separation<S>) -> [Lanes<S>; 3] {
         let strength = (1.0 / (4.0 * PI)) * s.inv * s.inv * s.inv;
-        s.xp.map(|x| strength * x)
+        [strength * s.xp[0], strength * s.xp[1], strength * s.xp[2]]
     }
 }
 
@@ -55,17 +56,16 @@ impl Kernel<3> for DoubleLayerPressure {
         } = *pair;
         let factor = 1.0 / (2.0 * PI);
         let moments = m.cubic(pair);
-        let beta = 3.0 * (nu_r * a + nu_z * b);
-        let alpha = 3.0 * nu_r * r;
+        let beta = (3.0 * factor) * (nu_r * a + nu_z * b);
+        let alpha = (3.0 * factor) * nu_r * r;
         let even = |k: usize| beta * moments.g[k] - alpha * moments.g[k + 1];
         let (g0, g1) = (even(0), even(1));
-        let e1 = m.e1 * pair.inv_rho2;
+        let e1 = factor * m.e1 * pair.inv_rho2;
         [
             a * g0 - r * g1 - nu_r * e1,
             r * (beta * moments.h[0] - alpha * moments.h[1]),
             b * g0 - nu_z * e1,
         ]
-        .map(|x| factor * x)
     }
 
     #[inline(always)]
@@ -73,6 +73,10 @@ impl Kernel<3> for DoubleLayerPressure {
         let inv2 = s.inv * s.inv;
         let strength = (1.0 / (2.0 * PI)) * s.inv * inv2;
         let along = 3.0 * inv2 * s.x_nu;
-        std::array::from_fn(|j| strength * (along * s.xp[j] - s.nu[j]))
+        [
+            strength * (along * s.xp[0] - s.nu[0]),
+            strength * (along * s.xp[1] - s.nu[1]),
+            strength * (along * s.xp[2] - s.nu[2]),
+        ]
     }
 }

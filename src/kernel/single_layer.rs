@@ -20,14 +20,13 @@ impl Kernel<9> for SingleLayer {
     #[inline(always)]
     fn mode<S: Simd>(&self, pair: &Pair<S>, m: &Moments<S>) -> [Lanes<S>; 9] {
         let Pair { r, rp, a, b, .. } = *pair;
-        let factor = 1.0 / (8.0 * PI);
         // int sin^2 t cos(nt) q^{-3/2} R / 2, and the logarithm E_0 - rho^2 E_1.
         let w = 0.5 * m.e_minus1_over_big_r + 0.5 * pair.h * (m.e1 - 2.0 * m.e0);
         let t = m.e0 - m.e1;
         let e1 = m.e1 * pair.inv_rho2;
         let swirl = (2.0 * m.n) * pair.inv_big_r * m.e0;
         let half_rho2 = 0.5 * pair.rho2;
-        [
+        let mut entries = [
             m.e0_cos + a * a * pair.inv_rho2 * m.e1_cos - w,
             1.5 * m.e0_sin + (a * r - half_rho2) * swirl,
             b * (a * e1 + 0.5 * pair.inv_r * t),
@@ -37,8 +36,11 @@ impl Kernel<9> for SingleLayer {
             b * (a * e1 - 0.5 * pair.inv_rp * t),
             b * r * swirl,
             m.e0 + b * b * e1,
-        ]
-        .map(|x| factor * x)
+        ];
+        for entry in &mut entries {
+            *entry = *entry * (1.0 / (8.0 * PI));
+        }
+        entries
     }
 
     #[inline(always)]
@@ -48,6 +50,10 @@ impl Kernel<9> for SingleLayer {
         let frame = [s.cos, s.sin, zero, -s.sin, s.cos, zero, zero, zero, one];
         let inv2 = s.inv * s.inv;
         let inv = s.inv * (1.0 / (8.0 * PI));
-        std::array::from_fn(|k| inv * (frame[k] + inv2 * s.x[k / 3] * s.xp[k % 3]))
+        let mut entries = frame;
+        for (k, entry) in entries.iter_mut().enumerate() {
+            *entry = inv * (*entry + inv2 * s.x[k / 3] * s.xp[k % 3]);
+        }
+        entries
     }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use pulp::Simd;
 
-use super::double_layer::cubic_modes;
+use super::double_layer::{cubic_modes, dyad};
 use super::modes::{Kernel, Parity};
 use super::moments::Moments;
 use super::pair::{Pair, Separation};
@@ -30,6 +30,6 @@ impl Kernel<9> for SingleLayerTraction {
     fn sample<S: Simd>(&self, s: &Separation<S>) -> [Lanes<S>; 9] {
         let inv2 = s.inv * s.inv;
         let strength = (-3.0 / (4.0 * PI)) * s.x_mu * s.inv * inv2 * inv2;
-        std::array::from_fn(|k| strength * s.x[k / 3] * s.xp[k % 3])
+        dyad(strength, s)
     }
 }

@@ -63,7 +63,7 @@ impl Formulation {
 }
 
 /// The factored equation of one shape: solves for any number of right-hand sides.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct DirichletSolver {
     discretization: Discretization,
     formulation: Formulation,

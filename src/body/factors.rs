@@ -8,59 +8,57 @@ use rayon::prelude::*;
 
 use super::discretization::Discretization;
 use super::matrix::ModalMatrices;
+use super::storage::Storage;
 use super::surface::SurfaceModes;
 
 /// LU factors of every mode's matrix.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct ModalFactors {
-    modes: Vec<Lu>,
+    /// Mode after mode, both factors in the matrix's place, column by column.
+    packed: Storage,
+    /// Mode after mode, the permutation of the rows.
+    permutations: Vec<Permutation>,
+    unknowns: usize,
     /// Square roots of the quadrature weights, node after node.
     root_weights: Vec<f64>,
 }
 
-/// Both factors of one matrix, in its place column by column, and the permutation of its rows.
+/// A permutation and its inverse.
 #[derive(Clone, Debug)]
-struct Lu {
-    packed: Vec<f64>,
+struct Permutation {
     forward: Vec<usize>,
     backward: Vec<usize>,
 }
 
-impl Lu {
-    /// Factors an `n` by `n` matrix given column by column.
-    fn new(mut packed: Vec<f64>, n: usize) -> Self {
-        let (mut forward, mut backward) = (vec![0; n], vec![0; n]);
-        let scratch = factor::lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Default::default());
-        factor::lu_in_place(
-            MatMut::from_column_major_slice_mut(&mut packed, n, n),
-            &mut forward,
-            &mut backward,
-            Par::Seq,
-            MemStack::new(&mut MemBuffer::new(scratch)),
-            Default::default(),
-        );
-        Self {
-            packed,
-            forward,
-            backward,
-        }
-    }
+/// Factors an `n` by `n` matrix, given column by column, in its place.
+fn factor_in_place(columns: &mut [f64], n: usize) -> Permutation {
+    let (mut forward, mut backward) = (vec![0; n], vec![0; n]);
+    let scratch = factor::lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Default::default());
+    factor::lu_in_place(
+        MatMut::from_column_major_slice_mut(columns, n, n),
+        &mut forward,
+        &mut backward,
+        Par::Seq,
+        MemStack::new(&mut MemBuffer::new(scratch)),
+        Default::default(),
+    );
+    Permutation { forward, backward }
+}
 
-    /// Solves with the transpose of the matrix that was factored.
-    fn solve_transpose(&self, columns: MatMut<'_, f64>) {
-        let n = self.forward.len();
-        let packed = MatRef::from_column_major_slice(&self.packed, n, n);
-        let scratch =
-            solve::solve_transpose_in_place_scratch::<usize, f64>(n, columns.ncols(), Par::Seq);
-        solve::solve_transpose_in_place(
-            packed,
-            packed,
-            PermRef::new_checked(&self.forward, &self.backward, n),
-            columns,
-            Par::Seq,
-            MemStack::new(&mut MemBuffer::new(scratch)),
-        );
-    }
+/// Solves with the transpose of the matrix that was factored.
+fn solve_transpose(packed: &[f64], permutation: &Permutation, columns: MatMut<'_, f64>) {
+    let n = permutation.forward.len();
+    let packed = MatRef::from_column_major_slice(packed, n, n);
+    let scratch =
+        solve::solve_transpose_in_place_scratch::<usize, f64>(n, columns.ncols(), Par::Seq);
+    solve::solve_transpose_in_place(
+        packed,
+        packed,
+        PermRef::new_checked(&permutation.forward, &permutation.backward, n),
+        columns,
+        Par::Seq,
+        MemStack::new(&mut MemBuffer::new(scratch)),
+    );
 }
 
 impl ModalFactors {
@@ -71,48 +69,53 @@ impl ModalFactors {
         done: &(dyn Fn() + Sync),
     ) -> Self {
         let unknowns = matrices.unknowns();
-        let modes = matrices
-            .into_transposed_columns()
-            .into_par_iter()
+        let mut packed = matrices.into_transposed_columns();
+        let permutations = packed
+            .as_mut_slice()
+            .par_chunks_mut(unknowns * unknowns)
             .map(|columns| {
-                let lu = Lu::new(columns, unknowns);
+                let permutation = factor_in_place(columns, unknowns);
                 done();
-                lu
+                permutation
             })
             .collect();
-        let root_weights = discretization
-            .nodes()
-            .iter()
-            .map(|node| node.weight.sqrt())
-            .collect();
+        let nodes = discretization.nodes().iter();
+        let root_weights = nodes.map(|node| node.weight.sqrt()).collect();
         Self {
-            modes,
+            packed,
+            permutations,
+            unknowns,
             root_weights,
         }
     }
 
     /// Modes, counting the zeroth.
     pub fn count(&self) -> usize {
-        self.modes.len()
+        self.permutations.len()
     }
 
     /// The density whose potential has the boundary values `data`; modes of `data` beyond the factors' are left out.
     pub fn solve(&self, data: &SurfaceModes) -> SurfaceModes {
         let nodes = data.nodes();
         let mut density = SurfaceModes::zero(self.count() - 1, nodes);
-        let shared = self
-            .modes
-            .par_iter()
+        let packed = self
+            .packed
+            .as_slice()
+            .par_chunks(self.unknowns * self.unknowns);
+        let factors = packed.zip(&self.permutations);
+        let shared = factors
             .zip(density.par_families_mut())
-            .enumerate();
-        shared.take(data.modes()).for_each(|(n, (lu, columns))| {
+            .enumerate()
+            .take(data.modes());
+        shared.for_each(|(n, ((packed, permutation), columns))| {
             columns.copy_from_slice(data.families(n));
             if columns.iter().all(|&x| x == 0.0) {
                 return;
             }
             self.scale(columns, |x, root| x * root);
             // The factors are the transposed matrix's.
-            lu.solve_transpose(MatMut::from_column_major_slice_mut(columns, 3 * nodes, 2));
+            let columns_of_both = MatMut::from_column_major_slice_mut(columns, self.unknowns, 2);
+            solve_transpose(packed, permutation, columns_of_both);
             self.scale(columns, |x, root| x / root);
         });
         density

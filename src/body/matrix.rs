@@ -16,6 +16,7 @@ use rayon::prelude::*;
 
 use super::discretization::{Discretization, Node};
 use super::near::{NearNodes, NearRules};
+use super::storage::Storage;
 use super::surface::SurfaceModes;
 use crate::kernel::{
     DoubleLayer, Kernel, Modes, SingleLayer, SingleLayerTraction, SourceRings, TargetRing,
@@ -39,9 +40,10 @@ pub enum LayerPotential {
 /// Unknown $j N + k$ is component $j$ (radial, azimuthal, axial) at node $k$ of $N$.
 #[derive(Debug)]
 pub struct ModalMatrices {
+    modes: usize,
     unknowns: usize,
     /// Mode after mode, the matrix row by row.
-    rows: Vec<Vec<f64>>,
+    rows: Storage,
 }
 
 /// The rows of one target: component `i` of mode `n` is number `3 n + i`.
@@ -50,12 +52,20 @@ type TargetRows<'a> = Vec<&'a mut [f64]>;
 /// The sign with which entry $3 i + j$ of a kernel enters the matrix of the first family.
 const SIGN: [f64; 9] = [1.0, -1.0, 1.0, 1.0, 1.0, 1.0, 1.0, -1.0, 1.0];
 
+/// Consecutive columns that stand one after the other in a block, too.
+struct Run {
+    place: usize,
+    column: usize,
+    length: usize,
+}
+
 /// A thread's buffers.
 #[derive(Default)]
 struct Buffers {
     near: NearNodes,
     sources: SourceRings,
     columns: Vec<usize>,
+    runs: Vec<Run>,
     workspace: Workspace,
     interpolated: Vec<f64>,
     weighted: Vec<f64>,
@@ -95,20 +105,15 @@ impl ModalMatrices {
     ) -> Result<Self, QuadratureError> {
         let nodes = discretization.nodes().len();
         let unknowns = 3 * nodes;
-        // Not a clone of one: fresh zeroed memory is first touched where it is filled, in parallel.
-        let mut rows: Vec<Vec<f64>> = (0..=n_max)
-            .map(|_| vec![0.0; unknowns * unknowns])
-            .collect();
+        let mut rows = Storage::zeros((n_max + 1) * unknowns * unknowns);
         let engine = Modes::new(n_max);
         let rules = NearRules::new(discretization.order())?;
         // Target by target, its three rows of every mode.
         let mut targets: Vec<TargetRows<'_>> = (0..nodes)
             .map(|_| Vec::with_capacity(3 * (n_max + 1)))
             .collect();
-        for matrix in &mut rows {
-            for (i, row) in matrix.chunks_mut(unknowns).enumerate() {
-                targets[i % nodes].push(row);
-            }
+        for (i, row) in rows.as_mut_slice().chunks_mut(unknowns).enumerate() {
+            targets[i % nodes].push(row);
         }
         targets.into_par_iter().enumerate().try_for_each_init(
             Buffers::default,
@@ -121,7 +126,11 @@ impl ModalMatrices {
                 Ok(())
             },
         )?;
-        Ok(Self { unknowns, rows })
+        Ok(Self {
+            modes: n_max + 1,
+            unknowns,
+            rows,
+        })
     }
 
     /// The operator applied to a density: its values at the nodes, in the modes that matrices and density share.
@@ -161,7 +170,7 @@ impl ModalMatrices {
         for i in 0..self.unknowns {
             let first = i * self.unknowns;
             let left = normal(i / nodes.len(), &nodes[i % nodes.len()]);
-            for (j, entry) in self.rows[0][first..][..self.unknowns]
+            for (j, entry) in self.rows.as_mut_slice()[first..][..self.unknowns]
                 .iter_mut()
                 .enumerate()
             {
@@ -172,7 +181,7 @@ impl ModalMatrices {
 
     /// Modes, counting the zeroth.
     pub fn modes(&self) -> usize {
-        self.rows.len()
+        self.modes
     }
 
     /// Unknowns of each mode: three per node.
@@ -182,11 +191,13 @@ impl ModalMatrices {
 
     /// The transposed matrix of mode `n`.
     pub fn transposed(&self, n: usize) -> MatRef<'_, f64> {
-        MatRef::from_column_major_slice(&self.rows[n], self.unknowns, self.unknowns)
+        let size = self.unknowns * self.unknowns;
+        let columns = &self.rows.as_slice()[n * size..][..size];
+        MatRef::from_column_major_slice(columns, self.unknowns, self.unknowns)
     }
 
     /// Mode after mode, the transposed matrix column by column.
-    pub(crate) fn into_transposed_columns(self) -> Vec<Vec<f64>> {
+    pub(crate) fn into_transposed_columns(self) -> Storage {
         self.rows
     }
 }
@@ -250,12 +261,29 @@ impl Buffers {
                 .iter()
                 .map(|&source| (nodes[self.columns[source]].weight * at.weight).sqrt()),
         );
+        self.runs.clear();
+        let columns = order.iter().map(|&source| self.columns[source]);
+        for (place, column) in columns.enumerate() {
+            match self.runs.last_mut() {
+                Some(run) if run.column + run.length == column => run.length += 1,
+                _ => self.runs.push(Run {
+                    place,
+                    column,
+                    length: 1,
+                }),
+            }
+        }
         for n in 0..modes {
             for (k, sign) in SIGN.into_iter().enumerate() {
-                let entries = &block[(n * 9 + k) * stride..];
+                let entries = &block[(n * 9 + k) * stride..][..order.len()];
                 let row = &mut rows[3 * n + k / 3][k % 3 * nodes.len()..][..nodes.len()];
-                for ((&source, entry), weight) in order.iter().zip(entries).zip(&self.weighted) {
-                    row[self.columns[source]] = sign * entry * weight;
+                for run in &self.runs {
+                    let entries = &entries[run.place..][..run.length];
+                    let weights = &self.weighted[run.place..][..run.length];
+                    let row = &mut row[run.column..][..run.length];
+                    for ((to, entry), weight) in row.iter_mut().zip(entries).zip(weights) {
+                        *to = sign * entry * weight;
+                    }
                 }
             }
         }

@@ -24,4 +24,5 @@ pub mod matrix;
 mod near;
 pub mod problem;
 pub mod rigid;
+mod storage;
 pub mod surface;

@@ -107,7 +107,7 @@ impl ModalMatrices {
         let unknowns = 3 * nodes;
         let mut rows = Storage::zeros((n_max + 1) * unknowns * unknowns);
         let engine = Modes::new(n_max);
-        let rules = NearRules::new(discretization.order())?;
+        let rules = NearRules::new(discretization.order(), n_max)?;
         // Target by target, its three rows of every mode.
         let mut targets: Vec<TargetRows<'_>> = (0..nodes)
             .map(|_| Vec::with_capacity(3 * (n_max + 1)))

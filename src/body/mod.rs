@@ -22,6 +22,8 @@ pub mod flow;
 pub mod frame;
 pub mod matrix;
 mod near;
+#[cfg(test)]
+mod near_tests;
 pub mod problem;
 pub mod rigid;
 mod storage;

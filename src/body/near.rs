@@ -7,7 +7,7 @@
 //!
 //! - as it is, where $\varrho$ is large enough;
 //! - with a Kolm–Rokhlin rule, if it is the target's own or one as long next to it on the same smooth piece of the curve, and the
-//!   mirror image is out of the way;
+//!   mirror image is out of the way and the highest mode does not decay too fast;
 //! - otherwise bisected until every part is resolved by a Gauss rule, but for the parts that end at the target, which have a rule for a
 //!   logarithm at that end.
 
@@ -29,6 +29,10 @@ fn far_enough(p: usize) -> f64 {
 const GAUSS: usize = 16;
 /// Nodes of the rule on parts that end at the target.
 const LOG_ENDPOINT: usize = 24;
+/// Longest part at a target, in decay lengths $r/n$ of the highest mode, that [`LOG_ENDPOINT`] nodes resolve.
+const DECAY_LENGTHS: f64 = 24.0;
+/// Longest panel for a Kolm–Rokhlin rule, in the same lengths and per node of the panel: longer ones are cut near the target.
+const DECAY_LENGTHS_PER_NODE: f64 = 2.5;
 /// Bisections after which a part is taken as it is: it is then of the size of rounding errors.
 const DEEPEST: usize = 52;
 
@@ -71,7 +75,10 @@ pub(crate) struct NearRules {
     /// What the rule of [`GAUSS`] nodes resolves, and the one of [`LOG_ENDPOINT`] nodes (whose degree is half a Gauss rule's).
     gauss_far: f64,
     log_far: f64,
-    has_kolm_rokhlin: bool,
+    /// Longest part at a target, relative to the target's radius.
+    longest: f64,
+    /// Longest panel with a Kolm–Rokhlin rule, relative to the target's radius; none where there are no such rules.
+    longest_kolm_rokhlin: f64,
 }
 
 /// The parameter of the Bernstein ellipse around a part of a curve, from its ends and arc length, that passes through a point.
@@ -84,14 +91,20 @@ pub(crate) fn bernstein(point: [f64; 2], [start, end]: [[f64; 2]; 2], length: f6
 }
 
 impl NearRules {
-    pub fn new(order: usize) -> Result<Self, QuadratureError> {
+    /// Rules for panels of `order` nodes and modes up to `n_max`.
+    pub fn new(order: usize, n_max: usize) -> Result<Self, QuadratureError> {
         Ok(Self {
+            longest: DECAY_LENGTHS / n_max.max(1) as f64,
             gauss: GaussLegendre::new(GAUSS)?,
             log_endpoint: LogEndpoint::new(LOG_ENDPOINT)?,
             far: far_enough(order),
             gauss_far: far_enough(GAUSS),
             log_far: 10f64.powf(DIGITS / LOG_ENDPOINT as f64),
-            has_kolm_rokhlin: KolmRokhlin::own(order, 0).is_ok(),
+            longest_kolm_rokhlin: if KolmRokhlin::own(order, 0).is_ok() {
+                DECAY_LENGTHS_PER_NODE * order as f64 / n_max.max(1) as f64
+            } else {
+                0.0
+            },
         })
     }
 
@@ -116,12 +129,9 @@ impl NearRules {
         near.separation.clear();
         near.interpolation.clear();
         let at = &discretization.nodes_of(home)[target];
-        let mirror_clear = bernstein(
-            [-at.r, at.z],
-            panel_ends(discretization, panel),
-            discretization.arc_length(panel),
-        ) >= self.far;
-        if self.has_kolm_rokhlin && mirror_clear {
+        let length = discretization.arc_length(panel);
+        let mirror = bernstein([-at.r, at.z], panel_ends(discretization, panel), length);
+        if mirror >= self.far && length <= self.longest_kolm_rokhlin * at.r {
             let order = discretization.order();
             if panel == home {
                 let rule = KolmRokhlin::own(order, target)?;
@@ -201,7 +211,7 @@ impl NearRules {
             let length = step(a, m) + step(m, b);
             let mirror = bernstein([-target.r, target.z], [a, b], length);
             let resolved = if at_target {
-                mirror >= self.log_far
+                mirror >= self.log_far && length <= self.longest * target.r
             } else {
                 mirror >= self.gauss_far
                     && bernstein([target.r, target.z], [a, b], length) >= self.gauss_far

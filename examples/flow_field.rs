@@ -25,11 +25,11 @@ const PIXELS: usize = 8;
 /// Width of the colour bar with its numbers.
 const BAR: usize = 150;
 /// Nearer to the body than this the velocity is taken to be the body's own, which is zero.
-const GAP: f64 = 0.04;
+const GAP: f64 = 0.02;
 /// Accuracy of the velocities.
 const TOLERANCE: f64 = 1e-4;
 const COLOURS: usize = 24;
-const STREAMLINES: usize = 25;
+const STREAMLINES: usize = 34;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).unwrap_or("flow.svg".into());
@@ -116,8 +116,8 @@ fn interpolate(field: &[[f64; 2]], point: [f64; 2]) -> [f64; 2] {
     })
 }
 
-/// The streamline from a point, by the midpoint rule in steps of equal length.
-fn streamline(field: &[[f64; 2]], start: [f64; 2]) -> Vec<[f64; 2]> {
+/// The streamline from a point, by the midpoint rule in steps of equal length; none if it comes too near to the body.
+fn streamline(field: &[[f64; 2]], start: [f64; 2]) -> Option<Vec<[f64; 2]>> {
     const STEP: f64 = 0.03;
     let direction = |point| {
         let [u, w] = interpolate(field, point);
@@ -127,15 +127,13 @@ fn streamline(field: &[[f64; 2]], start: [f64; 2]) -> Vec<[f64; 2]> {
     let advance = |[x, z]: [f64; 2], step: f64, [u, w]: [f64; 2]| [x + step * u, z + step * w];
     let mut line = vec![start];
     let mut point = start;
-    while X.contains(&point[0]) && Z.contains(&point[1]) && line.len() < 1000 {
-        let half = direction(point).map(|d| advance(point, 0.5 * STEP, d));
-        let Some(next) = half.and_then(direction).map(|d| advance(point, STEP, d)) else {
-            break;
-        };
-        point = next;
+    let beyond = 3.0 * STEP;
+    while point[0] < X.end + beyond {
+        let middle = advance(point, 0.5 * STEP, direction(point)?);
+        point = advance(point, STEP, direction(middle)?);
         line.push(point);
     }
-    line
+    Some(line)
 }
 
 fn draw(path: &str, body: &Body, field: &[[f64; 2]]) -> Result<(), Box<dyn Error>> {
@@ -169,7 +167,9 @@ fn draw(path: &str, body: &Body, field: &[[f64; 2]]) -> Result<(), Box<dyn Error
     };
     for k in 0..STREAMLINES {
         let z = Z.start + (Z.end - Z.start) * (k as f64 + 0.5) / STREAMLINES as f64;
-        let line = streamline(field, [X.start, z]);
+        let Some(line) = streamline(field, [X.start, z]) else {
+            continue;
+        };
         let line = line.into_iter().step_by(3).map(pixel);
         canvas.draw(&PathElement::new(
             line.collect::<Vec<_>>(),

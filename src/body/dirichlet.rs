@@ -202,7 +202,7 @@ fn assemble(
 }
 
 /// The weight $\eta$ that makes the single layer as strong on translations as $\frac12$: with
-/// $\lambda = \frac{1}{6\pi\lvert\Gamma\rvert} \int\\!\int \frac{d\Gamma\, d\Gamma'}{\lvert x - x'\rvert}$, the mean of $\langle e, S e\rangle$ over directions $e$, it is $1/2\lambda$
+/// $\lambda = \frac{1}{6\pi\lvert\Gamma\rvert} \int\\!\int \frac{d\Gamma\\, d\Gamma'}{\lvert x - x'\rvert}$, the mean of $\langle e, S e\rangle$ over directions $e$, it is $1/2\lambda$
 /// ($3/4a$ for a sphere of radius $a$).
 fn natural_weight(discretization: &Discretization) -> f64 {
     let nodes = discretization.nodes();

@@ -28,7 +28,7 @@ pub struct Node {
     pub z: f64,
     /// Outward unit normal, radial and axial component.
     pub normal: [f64; 2],
-    /// Quadrature weight per unit azimuth, $w\, r\, \lvert d\gamma/ds\rvert$: the surface element is this times $d\theta$.
+    /// Quadrature weight per unit azimuth, $w\\, r\\, \lvert d\gamma/ds\rvert$: the surface element is this times $d\theta$.
     pub weight: f64,
 }
 

@@ -6,7 +6,6 @@
 //! |---|---|
 //! | [`dirichlet`] | Dirichlet problems: equations and solver |
 //! | [`discretization`] | panels and nodes on the generating curve |
-//! | [`near`] | which quadrature resolves a panel's action on a near target |
 //! | [`matrix`] | modal Nyström matrices |
 //! | [`surface`] | vector fields on the surface and their modes |
 //! | [`factors`] | factors of the modal matrices, which belong to the shape |

@@ -6,10 +6,10 @@
 //! | kernel | formula |
 //! |---|---|
 //! | single layer (Stokeslet) | $S_{ij} = \frac{1}{8\pi}\left(\frac{\delta_{ij}}{\lvert\bar x\rvert} + \frac{\bar x_i \bar x_j}{\lvert\bar x\rvert^3}\right)$ |
-//! | double layer (stresslet with normal $\nu'$) | $D_{ij} = \frac{3}{4\pi} \frac{\bar x_i \bar x_j\, \bar x\cdot\nu'}{\lvert\bar x\rvert^5}$ |
-//! | traction of the single layer | $T_{ij} = -\frac{3}{4\pi} \frac{\bar x_i \bar x_j\, \bar x\cdot\nu}{\lvert\bar x\rvert^5}$ |
+//! | double layer (stresslet with normal $\nu'$) | $D_{ij} = \frac{3}{4\pi} \frac{\bar x_i \bar x_j\\, \bar x\cdot\nu'}{\lvert\bar x\rvert^5}$ |
+//! | traction of the single layer | $T_{ij} = -\frac{3}{4\pi} \frac{\bar x_i \bar x_j\\, \bar x\cdot\nu}{\lvert\bar x\rvert^5}$ |
 //! | pressure of the single layer | $P^S_j = \frac{1}{4\pi} \frac{\bar x_j}{\lvert\bar x\rvert^3}$ |
-//! | pressure of the double layer | $P^D_j = \frac{1}{2\pi} \left(-\frac{\nu'_j}{\lvert\bar x\rvert^3} + \frac{3 \bar x_j\, \bar x\cdot\nu'}{\lvert\bar x\rvert^5}\right)$ |
+//! | pressure of the double layer | $P^D_j = \frac{1}{2\pi} \left(-\frac{\nu'_j}{\lvert\bar x\rvert^3} + \frac{3 \bar x_j\\, \bar x\cdot\nu'}{\lvert\bar x\rvert^5}\right)$ |
 //!
 //! # Modes
 //!
@@ -17,10 +17,10 @@
 //! the azimuths through $t = \theta - \theta'$ alone. It is even in $t$ when it has no azimuthal index or two, and odd when it has
 //! one. Mode $n$ is the real number
 //!
-//! $$ K_{ij}(n) = \int_{-\pi}^{\pi} K_{ij}(t) \cos nt\, dt \ \text{(even)}, \qquad \int_{-\pi}^{\pi} K_{ij}(t) \sin nt\, dt \ \text{(odd)} . $$
+//! $$ K_{ij}(n) = \int_{-\pi}^{\pi} K_{ij}(t) \cos nt\\, dt \ \text{(even)}, \qquad \int_{-\pi}^{\pi} K_{ij}(t) \sin nt\\, dt \ \text{(odd)} . $$
 //!
-//! Near the singularity the modes come from toroidal functions, without cancellation ([`moments`]);
-//! for well-separated pairs from one FFT per four entries ([`fourier`]).
+//! Near the singularity the modes come from toroidal functions, without cancellation (`moments`);
+//! for well-separated pairs from one FFT per four entries (`fourier`).
 
 #[doc(hidden)]
 pub mod bench;

@@ -2,8 +2,8 @@
 //!
 //! With $c = 1 - \cos t$ and $|\bar x|^2 = q = \rho^2 + R c$,
 //!
-//! $$ E_m(n) = \int_{-\pi}^{\pi} \frac{\cos nt}{q^{m+1/2}}\, dt, \qquad
-//!    \int_{-\pi}^{\pi} \frac{c^k \cos nt}{q^{m+1/2}}\, dt, \qquad \int_{-\pi}^{\pi} \frac{c^k \sin t \sin nt}{q^{m+1/2}}\, dt . $$
+//! $$ E_m(n) = \int_{-\pi}^{\pi} \frac{\cos nt}{q^{m+1/2}}\\, dt, \qquad
+//!    \int_{-\pi}^{\pi} \frac{c^k \cos nt}{q^{m+1/2}}\\, dt, \qquad \int_{-\pi}^{\pi} \frac{c^k \sin t \sin nt}{q^{m+1/2}}\\, dt . $$
 //!
 //! Powers of $c$, unlike powers of $\cos t$, are small where the singularity is, so the kernels written in them are sums of
 //! terms of the size of the result. Every moment follows from the bounded numbers $e_m = \rho^{2m} E_m$; with $k_0 = 2\sqrt2/\sqrt R$,
@@ -31,7 +31,7 @@ pub(crate) struct Moments<S: Simd> {
     /// $(E_0(n-1) + E_0(n+1))/2$ and the same of $\rho^2 E_1$: the moments with another factor $\cos t$.
     pub e0_cos: Lanes<S>,
     pub e1_cos: Lanes<S>,
-    /// $(E_0(n-1) - E_0(n+1))/2$: the moment $\int \sin t \sin nt\, q^{-1/2}$.
+    /// $(E_0(n-1) - E_0(n+1))/2$: the moment $\int \sin t \sin nt\\, q^{-1/2}$.
     pub e0_sin: Lanes<S>,
 }
 

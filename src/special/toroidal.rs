@@ -7,18 +7,18 @@
 //!
 //! $$ (n + \tfrac12) D_n = (n - \tfrac12) D_{n-1} - 2 n h Q_{n-1/2}, \qquad Q_{n+1/2} = Q_{n-1/2} - D_n . $$
 //!
-//! Upwards it is stable while $n\,\mathrm{acosh}\,\chi \lesssim 1$; downwards every term is positive, so
+//! Upwards it is stable while $n\\,\mathrm{acosh}\\,\chi \lesssim 1$; downwards every term is positive, so
 //! nothing cancels at all, and it is started far enough out for its own solution to have died
 //! (Miller's algorithm). The starting values are complete elliptic integrals (Bulirsch's form) of the complementary
 //! modulus $k_c = \sqrt{h/(h+2)}$, which is known to full precision however close the points are:
 //!
-//! $$ Q_{-1/2} = \sqrt{\tfrac{2}{h+2}}\, K, \qquad D_0 = \sqrt{2(h+2)}\,(E - k_c^2 K). $$
+//! $$ Q_{-1/2} = \sqrt{\tfrac{2}{h+2}}\\, K, \qquad D_0 = \sqrt{2(h+2)}\\,(E - k_c^2 K). $$
 
 use pulp::{Simd, WithSimd};
 
 use crate::special::lanes::Lanes;
 
-/// $\chi - 1$ that goes with upward recurrence for degrees up to `n_max`: $n\,\mathrm{acosh}\,\chi < 1$.
+/// $\chi - 1$ that goes with upward recurrence for degrees up to `n_max`: $n\\,\mathrm{acosh}\\,\chi < 1$.
 fn upward_limit(n_max: usize) -> f64 {
     let xi = 1.0 / n_max.max(1) as f64;
     2.0 * (0.5 * xi).sinh().powi(2)
@@ -245,7 +245,7 @@ impl Toroidal {
     /// The derivative of order `k` $\le 3$ with respect to $\chi$: with $\nu = n - 1/2$,
     /// $(\chi^2-1) Q' = -\nu (D_{n-1} - h Q)$, $(1-\chi^2) Q'' = 2\chi Q' - \nu(\nu+1) Q$ and
     /// $(1-\chi^2) Q''' = 4\chi Q'' - (\nu(\nu+1) - 2) Q'$ (DLMF 14.10.5 and Legendre's equation).
-    /// The associated functions are $Q^m_\nu = (\chi^2-1)^{m/2} \, d^m Q_\nu / d\chi^m$ in DLMF's sign.
+    /// The associated functions are $Q^m_\nu = (\chi^2-1)^{m/2} \\, d^m Q_\nu / d\chi^m$ in DLMF's sign.
     ///
     /// `None` for `k > 3`.
     pub fn derivative(&self, n: usize, k: usize) -> Option<f64> {

@@ -51,7 +51,7 @@ fn spheroid(panels: usize, order: usize) -> Result<Discretization, StudyError> {
     Ok(Discretization::new(curve, panels, order)?)
 }
 
-/// $N$: the nodes along the curve times the azimuthal degrees of freedom, $p\, n_p (2 n_f + 1)$.
+/// $N$: the nodes along the curve times the azimuthal degrees of freedom, $p\\, n_p (2 n_f + 1)$.
 pub fn points(order: usize, panels: usize, modes: usize) -> usize {
     order * panels * (2 * modes + 1)
 }

@@ -1,6 +1,6 @@
 //! Power laws $T \propto N^\alpha$.
 
-/// $y = c\, x^\alpha$.
+/// $y = c\\, x^\alpha$.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerLaw {
     /// The exponent $\alpha$.

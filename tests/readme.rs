@@ -85,6 +85,9 @@ fn every_example_case_is_solved() {
     let cases = fs::read_dir(folder)
         .expect("the folder")
         .map(|entry| entry.expect("an entry").path());
-    let solved = cases.map(|case| solve(&case)).count();
-    assert!(solved >= 4);
+    let cases: Vec<_> = cases.collect();
+    assert!(cases.len() >= 4);
+    for case in cases {
+        solve(&case);
+    }
 }

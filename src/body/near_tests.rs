@@ -111,12 +111,12 @@ fn list(errors: &[f64]) -> String {
 
 /// With so many nodes a panel, modes up to this one have decay lengths that the rules resolve to the bar; the density's own
 /// interpolation gives out earlier.
-const RESOLVED: [(usize, usize); 2] = [(10, 6), (16, 13)];
+const RESOLVED: [(usize, usize); 2] = [(10, 6), (16, 20)];
 
 #[test]
 fn panels_at_a_pole_are_resolved_mode_by_mode() {
     for (polar, equatorial) in [(1.0, 0.5), (1.0, 1.0), (0.3, 1.0)] {
-        for (order, resolved) in RESOLVED {
+        for order in [10, 16] {
             for panel in [0, 7] {
                 let curve = Arc::new(Spheroid::new(polar, equatorial).expect("a spheroid"));
                 let errors = errors(curve, 8, order, panel);
@@ -124,11 +124,7 @@ fn panels_at_a_pole_are_resolved_mode_by_mode() {
                     "{polar} x {equatorial}, {order} nodes, panel {panel}: {}",
                     list(&errors)
                 );
-                assert!(
-                    errors[..=resolved].iter().all(|&e| e <= 3e-11),
-                    "{errors:?}"
-                );
-                assert!(errors.iter().all(|&e| e <= 1e-4), "{errors:?}");
+                assert!(errors.iter().all(|&e| e <= 1e-10), "{errors:?}");
             }
         }
     }

@@ -32,6 +32,18 @@ fn tori() {
     }
 }
 
+#[test]
+fn published_drag_of_tori() {
+    for row in rows(include_str!("../data/torus_axial_mitchell.csv")) {
+        let (minor, published) = (row[0], row[1] * 6.0 * PI * (1.0 + row[0]));
+        let curve = torus(minor);
+        let panels = Panels::resolving(&*curve, 16, 1e-10).expect("panels");
+        let error = (resistance(&curve, &panels, 16)[0] / published - 1.0).abs();
+        println!("torus 1 + {minor} along its axis: {error:.1e} from Mitchell et al.");
+        assert!(error <= 2e-12);
+    }
+}
+
 /// The thin torus of Johnson & Wu (J. Fluid Mech. 95, 263, 1979): slender-body theory, with an error of the thickness squared.
 #[test]
 fn slender_tori() {

@@ -91,7 +91,7 @@ pub fn chord_by_quadrature(
 fn integral(curve: &(impl GeneratingCurve + ?Sized), s: f64, step: f64) -> Meridian {
     let half = 0.5 * step;
     let (mut r, mut z) = (0.0, 0.0);
-    for (x, w) in SIXTEEN.nodes.iter().zip(&SIXTEEN.weights) {
+    for (x, w) in SIXTEEN.iter() {
         let tangent = curve.tangent(s + half * (1.0 + x));
         r += w * tangent.r;
         z += w * tangent.z;

@@ -123,7 +123,7 @@ impl FunctionCurve {
         for (panel, difference) in panels.iter().zip(differences) {
             let half = 0.5 * panel.length();
             let (mut r, mut z) = (-difference.r, -difference.z);
-            for (&x, w) in SIXTEEN.nodes.iter().zip(&SIXTEEN.weights) {
+            for (x, w) in SIXTEEN.iter() {
                 let tangent = self.tangent(panel.at(x));
                 r += half * w * tangent.r;
                 z += half * w * tangent.z;
@@ -229,7 +229,7 @@ fn interpolate(
     while let Some(panel) = waiting.pop() {
         let values = transform
             .rule
-            .nodes
+            .nodes()
             .iter()
             .map(|&x| sample(panel.at(x)))
             .collect::<Result<Vec<_>, _>>()?;

@@ -2,7 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::legendre::{Rule, SIXTEEN};
+use panel_quadrature::GaussLegendre;
+
+use super::legendre::SIXTEEN;
 use super::{GeneratingCurve, Panel, Panels};
 
 /// The length of the part of the curve between the parameters `start` and `end` (ascending, on one piece):
@@ -43,15 +45,14 @@ pub fn volume(curve: &(impl GeneratingCurve + ?Sized), panels: &Panels) -> f64 {
     PI * volume
 }
 
-fn integral(panels: impl Iterator<Item = Panel>, rule: &Rule, f: impl Fn(f64) -> f64) -> f64 {
+fn integral(
+    panels: impl Iterator<Item = Panel>,
+    rule: &GaussLegendre,
+    f: impl Fn(f64) -> f64,
+) -> f64 {
     panels
         .map(|panel| {
-            let sum: f64 = rule
-                .nodes
-                .iter()
-                .zip(&rule.weights)
-                .map(|(&x, w)| w * f(panel.at(x)))
-                .sum();
+            let sum: f64 = rule.iter().map(|(x, w)| w * f(panel.at(x))).sum();
             0.5 * panel.length() * sum
         })
         .sum()

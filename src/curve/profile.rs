@@ -227,7 +227,7 @@ fn difference(segment: &Segment, t: f64, dt: f64) -> Meridian {
 /// Arc length of a segment.
 fn length(segment: &Segment, h: f64) -> f64 {
     let half = 0.5 * h;
-    let speeds = SIXTEEN.nodes.iter().zip(&SIXTEEN.weights).map(|(x, w)| {
+    let speeds = SIXTEEN.iter().map(|(x, w)| {
         let t = derivative(segment, half * (1.0 + x));
         w * t.r.hypot(t.z)
     });

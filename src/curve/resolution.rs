@@ -82,7 +82,7 @@ impl Panels {
 fn size(curve: &(impl GeneratingCurve + ?Sized), panels: &Panels, transform: &Transform) -> f64 {
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for panel in panels {
-        for &x in &transform.rule.nodes {
+        for &x in transform.rule.nodes() {
             let p = curve.point(panel.at(x));
             low = [low[0].min(p.r), low[1].min(p.z)];
             high = [high[0].max(p.r), high[1].max(p.z)];
@@ -98,7 +98,12 @@ fn tail(
     transform: &Transform,
     size: f64,
 ) -> Result<f64, CurveError> {
-    let parameters: Vec<f64> = transform.rule.nodes.iter().map(|&x| panel.at(x)).collect();
+    let parameters: Vec<f64> = transform
+        .rule
+        .nodes()
+        .iter()
+        .map(|&x| panel.at(x))
+        .collect();
     let finite = |p: Meridian, quantity, s| {
         if p.r.is_finite() && p.z.is_finite() {
             Ok(p)
@@ -168,7 +173,7 @@ mod tests {
             for panel in &panels {
                 let values: Vec<f64> = transform
                     .rule
-                    .nodes
+                    .nodes()
                     .iter()
                     .map(|&x| speed(panel.at(x)))
                     .collect();

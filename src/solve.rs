@@ -89,7 +89,12 @@ pub fn solve(case: &Case, progress: &dyn Progress) -> Result<Report, SolveError>
         let absolute_error = errors.fold(0.0, f64::max);
         report.test = Some(KnownFlowReport {
             absolute_error,
-            relative_error: absolute_error / answer.largest_speed,
+            // Stokeslets without force, or that cancel, leave nothing to relate to.
+            relative_error: if absolute_error == 0.0 {
+                0.0
+            } else {
+                absolute_error / answer.largest_speed
+            },
         });
     }
     Ok(report)
@@ -234,6 +239,8 @@ impl<'a> Setting<'a> {
                 least,
                 ..
             }) => {
+                // The flow is evaluated more precisely than was asked for.
+                let tolerance = self.case.tolerance().unwrap_or(tolerance);
                 let probe = &self.case.probes[index];
                 let message = format!(
                     "probes.points: {:?} is too near to the surface for a tolerance of {tolerance:e}: \

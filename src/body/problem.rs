@@ -123,8 +123,12 @@ const MOST_ENTRIES: f64 = 6e8;
 const ROUNDS: usize = 24;
 
 /// One solution, with what it takes to compare it with another.
+///
+/// The factors are not kept: two solutions are alive at a time, and the factors are most of what they would hold.
 struct Solution {
-    solver: DirichletSolver,
+    discretization: Discretization,
+    unknowns: usize,
+    seconds: Seconds,
     density: SurfaceModes,
     wrench: Wrench,
     flow: Vec<FlowAt>,
@@ -162,7 +166,8 @@ impl Problem<'_> {
     ) -> Result<Answer, ProblemError> {
         let begin = Instant::now();
         let evaluation = (1e-3 * tolerance).max(EVALUATION);
-        let first = Panels::resolving(&*self.curve, ORDER, tolerance.sqrt().clamp(1e-7, 1e-2))?;
+        let first = Panels::resolving(&*self.curve, ORDER, tolerance.sqrt().clamp(1e-7, 1e-2))?
+            .graded_across_joints(&*self.curve);
         let mut resolution = Resolution {
             panels: first,
             order: ORDER,
@@ -189,7 +194,10 @@ impl Problem<'_> {
             if error <= tolerance || rounds_without_gain > 2 {
                 break;
             }
-            let panels = resolution.panels.bisected(|panel| marked[panel]).graded();
+            let panels = resolution
+                .panels
+                .bisected(|panel| marked[panel])
+                .graded_across_joints(&*self.curve);
             let nodes = (panels.len() * (ORDER + EXTRA_ORDER)) as f64;
             if nodes > MOST_NODES as f64
                 || nodes * nodes * 9.0 * (resolution.modes + 1) as f64 > MOST_ENTRIES
@@ -231,7 +239,9 @@ impl Problem<'_> {
         let flow = solver.flow(&density).at(self.targets, evaluation)?;
         let evaluate = start.elapsed().as_secs_f64();
         Ok(Solution {
-            solver,
+            discretization: solver.discretization().clone(),
+            unknowns: solver.unknowns(),
+            seconds: solver.seconds(),
             density,
             wrench,
             flow,
@@ -317,13 +327,13 @@ const EVALUATION: f64 = 1e-15;
 
 impl Solution {
     fn seconds(&self) -> f64 {
-        let Seconds { assemble, factor } = self.solver.seconds();
+        let Seconds { assemble, factor } = self.seconds;
         assemble + factor + self.solve + self.evaluate
     }
 
     /// How far the answers of two solutions are apart, in the units of [`Answer::error_estimate`].
     fn difference(&self, other: &Self) -> f64 {
-        let size = self.solver.discretization().size();
+        let size = self.discretization.size();
         let velocity = (self.flow.iter().zip(&other.flow))
             .map(|(a, b)| (a.velocity - b.velocity).norm())
             .fold(0.0, f64::max);
@@ -344,7 +354,7 @@ impl Solution {
 
     /// Panels that carry a good part of the difference between two densities.
     fn panels_that_differ(&self, other: &Self) -> Result<Vec<bool>, QuadratureError> {
-        let (coarse, fine) = (self.solver.discretization(), other.solver.discretization());
+        let (coarse, fine) = (&self.discretization, &other.discretization);
         let (p, q) = (coarse.order(), fine.order());
         let interpolation = coarse.basis().interpolation_matrix(fine.basis().nodes())?;
         let shared = self.density.modes().min(other.density.modes());
@@ -369,7 +379,7 @@ impl Solution {
     }
 
     fn answer(self, resolution: Resolution, error_estimate: f64, estimate: f64) -> Answer {
-        let Seconds { assemble, factor } = self.solver.seconds();
+        let Seconds { assemble, factor } = self.seconds;
         let timings = Timings {
             assemble,
             factor,
@@ -379,7 +389,7 @@ impl Solution {
         };
         Answer {
             wrench: self.wrench,
-            unknowns: self.solver.unknowns(),
+            unknowns: self.unknowns,
             flow: self.flow,
             error_estimate,
             resolution,

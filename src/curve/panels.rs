@@ -218,6 +218,34 @@ impl Panels {
         }
     }
 
+    /// The same panels, [graded](Self::graded), and at a joint of two smooth pieces bisected until neither side's arc is more than
+    /// twice as long as the other's: a density that varies over the one cannot be smooth over much more of the other.
+    #[must_use]
+    pub fn graded_across_joints(&self, curve: &(impl GeneratingCurve + ?Sized)) -> Self {
+        let mut result = self.graded();
+        loop {
+            let last = result.len() - 1;
+            let arc = |i: usize| arc_length(curve, result.panels[i].start, result.panels[i].end);
+            let mut marks = vec![false; result.len()];
+            for i in 0..result.len() {
+                let next = if i < last { i + 1 } else { 0 };
+                let seam = next == 0;
+                if result.panels[i].piece == result.panels[next].piece
+                    || (seam && self.topology != Topology::Loop)
+                {
+                    continue;
+                }
+                let (before, after) = (arc(i), arc(next));
+                marks[i] |= before > 2.0 * after * (1.0 + 1e-6);
+                marks[next] |= after > 2.0 * before * (1.0 + 1e-6);
+            }
+            if !marks.contains(&true) || result.len() > MOST_PANELS / 2 {
+                return result;
+            }
+            result = result.bisected(|index| marks[index]).graded();
+        }
+    }
+
     /// The same panels, those at a joint of two smooth pieces bisected towards it `levels` times: there the
     /// density is not smooth (a capsule's curvature jumps). Each round halves the panels at the joints.
     ///

@@ -163,11 +163,24 @@ impl Ladder {
             d_n = d_n / q_n;
             q_n = Lanes::splat(h.0, 1.0);
         }
-        // Room for growth by exp(n_max acosh chi) on the way down.
+        // Room for growth by exp(n_max acosh chi) on the way down, made again where that exceeds what doubles hold.
         let tiny = Lanes::splat(h.0, 1e-250);
+        let (large, one) = (Lanes::splat(h.0, 1e250), Lanes::splat(h.0, 1.0));
+        let shrink = Lanes::splat(h.0, 1e-300);
         d_n = d_n * tiny;
         q_n = tiny;
         for n in (1..=self.n_max).rev() {
+            if n % RESCALE == 0 && q_n.max() > 1e250 {
+                let factor = q_n.select_less(large, one, shrink);
+                q_n = q_n * factor;
+                d_n = d_n * factor;
+                for x in q[n + 1..=self.n_max]
+                    .iter_mut()
+                    .chain(&mut d[n + 1..=self.n_max])
+                {
+                    *x = (Lanes(h.0, *x) * factor).1;
+                }
+            }
             q[n] = q_n.1;
             d[n] = d_n.1;
             let [ratio, slope] = self.coefficients.down[n];

@@ -80,9 +80,7 @@ fn the_library_example_is_that_of_the_front_page() {
 #[test]
 fn every_example_case_is_solved() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/cases");
-    let cases = fs::read_dir(folder)
-        .expect("the folder")
-        .map(|entry| entry.expect("an entry").path());
-    let solved = cases.map(|case| solve(&case)).count();
-    assert!(solved >= 4);
+    for entry in fs::read_dir(folder).expect("the folder") {
+        solve(&entry.expect("an entry").path());
+    }
 }

@@ -64,6 +64,9 @@ const LEVELS: u32 = 4;
 /// Natural logarithm of what the rules' errors exceed the bare powers by: the kernels are large near the surface.
 const MARGIN: f64 = 7.0;
 
+/// What is left of the ellipse's parameter (its logarithm) on a panel that bends towards the target.
+const BENT: f64 = 0.9;
+
 /// Natural logarithm of how far below the density's last coefficients the quadrature's error is worth pushing.
 const BELOW_LEFT_OUT: f64 = 21.0;
 
@@ -170,7 +173,7 @@ impl<'a> Flow<'a> {
             };
             let decay = &panel_decay[panel * order..][..order];
             let along = |k: usize| {
-                let log_rho = bernstein([r, z], [end(k), end(k + 1)], length).ln();
+                let log_rho = BENT * bernstein([r, z], [end(k), end(k + 1)], length).ln();
                 // Degree k of the density, k / parts on a part, leaves 2 order - k to the kernel.
                 (decay.iter().enumerate()).all(|(k, decay)| {
                     let left = (2 * order) as f64 - k as f64 / parts as f64;

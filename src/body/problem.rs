@@ -2,8 +2,9 @@
 //!
 //! Every answer is computed twice: on the discretization asked for, and on one that has the same panels with more nodes on each,
 //! more modes, and other quadrature for the near interactions. The difference between the two is the error of the coarser, which is
-//! the one reported; where the coarser is not good enough the panels on which the densities differ are bisected.
+//! the one reported; where the coarser is not good enough the panels that resolve the density worst are bisected.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -101,6 +102,20 @@ pub enum ProblemError {
     /// There is no quadrature of the order asked for.
     #[error(transparent)]
     Quadrature(#[from] QuadratureError),
+    /// The body and its velocity would take more memory than the solver takes by itself.
+    #[error(
+        "a tolerance of {tolerance:e} would start with {panels} panels and {modes} modes, {gigabytes:.0} GB of matrices: expected a larger tolerance, or panels and modes by hand"
+    )]
+    Large {
+        /// The tolerance asked for.
+        tolerance: f64,
+        /// Panels to start with.
+        panels: usize,
+        /// Modes of the velocity.
+        modes: usize,
+        /// Memory of the matrices.
+        gigabytes: f64,
+    },
     /// The velocity imposed is not finite somewhere on the surface.
     #[error("the velocity imposed on the surface is not finite everywhere")]
     Velocity,
@@ -116,11 +131,23 @@ const SAFETY: f64 = 2.0;
 const ROUNDING: f64 = 4e-15;
 /// Largest number of modes the solver chooses.
 const MOST_MODES: usize = 400;
-/// Largest number of nodes on the curve the solver chooses, and of entries in all its matrices.
-const MOST_NODES: usize = 4000;
-const MOST_ENTRIES: f64 = 6e8;
+/// Most entries of all matrices that the solver chooses by itself: 8 GB.
+const MOST_ENTRIES: f64 = 1e9;
+/// Panels are bisected that miss this fraction of what the worst does.
+const MARKED: f64 = 0.02;
 /// Rounds of refinement.
 const ROUNDS: usize = 24;
+
+/// Entries of all the matrices that are in memory at once for a resolution: those of the solution it is checked with.
+pub(crate) fn matrix_entries(panels: usize, order: usize, modes: usize) -> f64 {
+    let unknowns = (3 * panels * (order + EXTRA_ORDER)) as f64;
+    unknowns * unknowns * (checking_modes(modes) + 1) as f64
+}
+
+/// Modes of the solution that checks one of so many.
+fn checking_modes(modes: usize) -> usize {
+    modes + 8.max(modes / 4)
+}
 
 /// One solution, with what it takes to compare it with another.
 ///
@@ -150,7 +177,7 @@ impl Problem<'_> {
         let solution = self.solve(&resolution, EVALUATION, progress)?;
         let start = Instant::now();
         let check = self.check(&resolution, EVALUATION, progress)?;
-        let error = SAFETY * solution.difference(&check) + ROUNDING;
+        let error = solution.error(&check);
         Ok(solution.answer(resolution, error, start.elapsed().as_secs_f64()))
     }
 
@@ -174,13 +201,22 @@ impl Problem<'_> {
             modes: 1,
         };
         resolution.modes = self.modes_for(&resolution, tolerance)?;
+        let entries = self.entries(resolution.panels.len(), resolution.modes);
+        if entries > MOST_ENTRIES {
+            return Err(ProblemError::Large {
+                tolerance,
+                panels: resolution.panels.len(),
+                modes: resolution.modes,
+                gigabytes: 8e-9 * entries,
+            });
+        }
         let mut best: Option<Answer> = None;
         let mut rounds_without_gain = 0;
         for _ in 0..ROUNDS {
             let solution = self.solve(&resolution, evaluation, progress)?;
             let check = self.check(&resolution, evaluation, progress)?;
-            let error = SAFETY * solution.difference(&check) + ROUNDING;
-            let marked = solution.panels_that_differ(&check)?;
+            let error = solution.error(&check);
+            let marked = solution.unresolved_panels()?;
             let spent = begin.elapsed().as_secs_f64();
             let own = solution.seconds();
             let answer = solution.answer(resolution.clone(), error, spent - own);
@@ -198,15 +234,23 @@ impl Problem<'_> {
                 .panels
                 .bisected(|panel| marked[panel])
                 .graded_across_joints(&*self.curve);
-            let nodes = (panels.len() * (ORDER + EXTRA_ORDER)) as f64;
-            if nodes > MOST_NODES as f64
-                || nodes * nodes * 9.0 * (resolution.modes + 1) as f64 > MOST_ENTRIES
-            {
+            if self.entries(panels.len(), resolution.modes) > MOST_ENTRIES {
                 break;
             }
             resolution.panels = panels;
         }
         best.ok_or(ProblemError::Velocity)
+    }
+
+    /// Matrix entries for so many panels and modes where the solver chooses.
+    fn entries(&self, panels: usize, modes: usize) -> f64 {
+        match self.velocity {
+            // Nothing but modes 0 and 1, in the check too.
+            BoundaryVelocity::Rigid(_) => {
+                2.0 * (3.0 * (panels * (ORDER + EXTRA_ORDER)) as f64).powi(2)
+            }
+            BoundaryVelocity::Field(_) => matrix_entries(panels, ORDER, modes),
+        }
     }
 
     fn discretization(&self, resolution: &Resolution) -> Result<Discretization, QuadratureError> {
@@ -261,7 +305,7 @@ impl Problem<'_> {
         let modes = match self.velocity {
             // A rigid motion has no more.
             BoundaryVelocity::Rigid(_) => 1,
-            BoundaryVelocity::Field(_) => resolution.modes + 8.max(resolution.modes / 4),
+            BoundaryVelocity::Field(_) => checking_modes(resolution.modes),
         };
         let finer = Resolution {
             order: resolution.order + EXTRA_ORDER,
@@ -331,6 +375,24 @@ impl Solution {
         assemble + factor + self.solve + self.evaluate
     }
 
+    /// The estimated error, from the solution that checks this one.
+    fn error(&self, check: &Self) -> f64 {
+        SAFETY * self.difference(check) + ROUNDING * self.thinness()
+    }
+
+    /// $A^2 / 12\pi a V$ for area, size and volume: 1 for a sphere and about that for a needle, but the aspect ratio of a disc, whose two
+    /// faces nearly cancel and lose as many digits.
+    fn thinness(&self) -> f64 {
+        let nodes = self.discretization.nodes();
+        // The volume is a third of the flux of the position, x . nu.
+        let flux: f64 = nodes
+            .iter()
+            .map(|n| n.weight * (n.r * n.normal[0] + n.z * n.normal[1]))
+            .sum();
+        let (area, size) = (self.discretization.area(), self.discretization.size());
+        (area * area / (8.0 * PI * PI * size * flux)).max(1.0)
+    }
+
     /// How far the answers of two solutions are apart, in the units of [`Answer::error_estimate`].
     fn difference(&self, other: &Self) -> f64 {
         let size = self.discretization.size();
@@ -352,30 +414,34 @@ impl Solution {
         relative(velocity, self.largest_speed).max(relative(wrench, scale))
     }
 
-    /// Panels that carry a good part of the difference between two densities.
-    fn panels_that_differ(&self, other: &Self) -> Result<Vec<bool>, QuadratureError> {
-        let (coarse, fine) = (&self.discretization, &other.discretization);
-        let (p, q) = (coarse.order(), fine.order());
-        let interpolation = coarse.basis().interpolation_matrix(fine.basis().nodes())?;
-        let shared = self.density.modes().min(other.density.modes());
-        let norms: Vec<f64> = (0..coarse.panels().len())
-            .map(|panel| {
-                let mut norm = 0.0;
-                for n in 0..shared {
-                    for (family, component) in (0..2).flat_map(|f| (0..3).map(move |j| (f, j))) {
-                        let a = &self.density.component(n, family, component)[panel * p..][..p];
-                        let b = &other.density.component(n, family, component)[panel * q..][..q];
-                        for (k, node) in fine.nodes_of(panel).iter().enumerate() {
-                            let value: f64 = (0..p).map(|j| interpolation[(k, j)] * a[j]).sum();
-                            norm += node.weight * (value - b[k]).powi(2);
-                        }
-                    }
+    /// Panels on which the density is resolved worst, by the last two of its Legendre coefficients there.
+    ///
+    /// The difference of two densities would not do: what one panel misses spreads over all.
+    fn unresolved_panels(&self) -> Result<Vec<bool>, QuadratureError> {
+        let order = self.discretization.order();
+        let mut missed = vec![0.0; self.discretization.panels().len()];
+        for n in 0..self.density.modes() {
+            for k in 0..6 {
+                let values = self.density.component(n, k / 3, k % 3);
+                for (values, missed) in values.chunks(order).zip(&mut missed) {
+                    let coefficients = self.discretization.basis().coefficients(values)?;
+                    *missed += coefficients[order - 2..].iter().map(|c| c * c).sum::<f64>();
                 }
-                norm.sqrt()
-            })
-            .collect();
-        let most = norms.iter().copied().fold(0.0, f64::max);
-        Ok(norms.into_iter().map(|norm| norm >= 0.05 * most).collect())
+            }
+        }
+        for (panel, missed) in missed.iter_mut().enumerate() {
+            *missed *= self
+                .discretization
+                .nodes_of(panel)
+                .iter()
+                .map(|n| n.weight)
+                .sum::<f64>();
+        }
+        let most = missed.iter().copied().fold(0.0, f64::max);
+        Ok(missed
+            .into_iter()
+            .map(|missed| missed >= MARKED * MARKED * most)
+            .collect())
     }
 
     fn answer(self, resolution: Resolution, error_estimate: f64, estimate: f64) -> Answer {

@@ -1,5 +1,7 @@
 //! How accurate the answer must be, or how finely the shapes are cut.
 
+use crate::body::problem::matrix_entries;
+
 use super::CaseError;
 use super::node::Node;
 use super::section::Section;
@@ -10,8 +12,8 @@ pub const SMALLEST_TOLERANCE: f64 = 1e-14;
 pub const MOST_PANELS: usize = 1000;
 /// Most azimuthal modes.
 pub const MOST_MODES: usize = 1000;
-/// Most memory, in GiB, that panels, order and modes by hand may ask for.
-const MOST_MEMORY: f64 = 64.0;
+/// Most memory, in GiB, that panels, order and modes by hand may ask for, the solution that checks them included.
+const MOST_MEMORY: f64 = 16.0;
 
 /// What `[accuracy]` asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,8 +85,7 @@ fn read_by_hand(section: &Section<'_>) -> Result<Accuracy, CaseError> {
         .filter(|order| [10, 16].contains(order))
         .ok_or_else(|| order_node.expected("10 or 16"))?;
     let modes = modes_node.integer("a number of modes", 1..=MOST_MODES)?;
-    let rows = (3 * panels * order) as f64;
-    let memory = (modes + 1) as f64 * rows * rows * 8.0 / f64::from(1 << 30);
+    let memory = matrix_entries(panels, order, modes) * 8.0 / f64::from(1 << 30);
     if memory > MOST_MEMORY {
         return Err(panels_node.error(format!(
             "panels = {panels}, order = {order}, modes = {modes} would need {memory:.0} GiB of memory: \

@@ -131,7 +131,7 @@ fn tail(
     // What rounding alone leaves in the last coefficients is no sign of anything missed; it shows in a ring much thinner than wide.
     let missed = |f: &Vec<f64>| {
         let largest = f.iter().fold(0.0f64, |most, x| most.max(x.abs()));
-        (transform.tail(f) - 32.0 * f64::EPSILON * largest).max(0.0)
+        (transform.tail(f) - 64.0 * f64::EPSILON * largest).max(0.0)
     };
     Ok([r, z, speed, normal_r, normal_z]
         .iter()

@@ -145,6 +145,11 @@ impl Modes {
         sources: &SourceRings,
         workspace: &mut Workspace,
     ) {
+        if sources.len() == 0 {
+            workspace.order.clear();
+            workspace.stride = 0;
+            return;
+        }
         let near = workspace.arrange(target, sources, self.far);
         workspace.stride = padded(sources.len());
         workspace

@@ -30,8 +30,8 @@ fn functions_differences_and_derivatives_match_high_precision() {
         worst[0], worst[1]
     );
     assert!(rows > 400, "only {rows} rows read");
-    assert!(worst[0].0 <= 1e-13, "{:?}", worst[0]);
-    assert!(worst[1].0 <= 1e-13, "{:?}", worst[1]);
+    assert!(worst[0].0 <= 4e-14, "{:?}", worst[0]);
+    assert!(worst[1].0 <= 4e-14, "{:?}", worst[1]);
 }
 
 #[test]

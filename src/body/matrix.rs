@@ -65,6 +65,7 @@ struct Buffers {
     near: NearNodes,
     sources: SourceRings,
     columns: Vec<usize>,
+    near_panels: Vec<usize>,
     runs: Vec<Run>,
     workspace: Workspace,
     interpolated: Vec<f64>,
@@ -222,9 +223,12 @@ impl Buffers {
         };
         self.sources.clear();
         self.columns.clear();
+        self.near_panels.clear();
         for panel in 0..discretization.panels().len() {
             if panel != home && rules.is_far(discretization, at, panel) {
                 self.columns.extend(panel * order..(panel + 1) * order);
+            } else {
+                self.near_panels.push(panel);
             }
         }
         for &column in &self.columns {
@@ -234,16 +238,15 @@ impl Buffers {
         }
         engine.evaluate(kernel, target, &self.sources, &mut self.workspace);
         self.scatter_far(nodes, at, engine.count(), rows);
-        for panel in 0..discretization.panels().len() {
-            if panel == home || !rules.is_far(discretization, at, panel) {
-                rules.fill(discretization, home, local, panel, &mut self.near)?;
-                self.sources.clear();
-                for (node, &separation) in self.near.nodes.iter().zip(&self.near.separation) {
-                    self.sources.push(node.r, separation, node.normal);
-                }
-                engine.evaluate(kernel, target, &self.sources, &mut self.workspace);
-                self.interpolate_near(nodes, at, engine.count(), panel * order, order, rows);
+        for place in 0..self.near_panels.len() {
+            let panel = self.near_panels[place];
+            rules.fill(discretization, home, local, panel, &mut self.near)?;
+            self.sources.clear();
+            for (node, &separation) in self.near.nodes.iter().zip(&self.near.separation) {
+                self.sources.push(node.r, separation, node.normal);
             }
+            engine.evaluate(kernel, target, &self.sources, &mut self.workspace);
+            self.interpolate_near(nodes, at, engine.count(), panel * order, order, rows);
         }
         Ok(())
     }

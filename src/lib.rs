@@ -101,7 +101,7 @@ pub use curve::{
     Polar, Profile, Spheroid, Torus,
 };
 #[doc(inline)]
-pub use kernel::{FlowAt, Stokeslet};
+pub use kernel::{FlowAt, FlowGradientAt, Stokeslet};
 #[doc(inline)]
 pub use progress::{Progress, Silent};
 

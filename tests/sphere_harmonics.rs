@@ -6,11 +6,11 @@ use std::sync::Arc;
 
 use axistokes::body::discretization::Discretization;
 use axistokes::body::flow::Flow;
+use axistokes::body::layers::{LayerWeights, Layers};
 use axistokes::body::matrix::{LayerPotential, ModalMatrices};
 use axistokes::body::rigid::{RigidMotion, Wrench};
 use axistokes::body::surface::SurfaceModes;
 use axistokes::curve::{Biconcave, Capsule, GeneratingCurve, Panels, Spheroid, Torus};
-use axistokes::kernel::LayerWeights;
 use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
 
@@ -328,7 +328,8 @@ fn net_force() {
             }));
         }
         let mean = |double: f64, single: f64| {
-            let flow = Flow::new(&body, &density, LayerWeights { double, single });
+            let weights = LayerWeights { double, single };
+            let flow = Flow::new(&body, Layers::weighted(&density, weights));
             let at = flow.at(&targets, 1e-14).expect("targets far enough");
             let mut sum = Vector3::zeros();
             for (node, ring) in sphere.nodes().iter().zip(at.chunks(around as usize)) {
@@ -365,7 +366,7 @@ fn rigid_motions_are_at_rest_outside() {
                 double: 1.0,
                 single: 0.0,
             };
-            let flow = Flow::new(&body, &density, weights);
+            let flow = Flow::new(&body, Layers::weighted(&density, weights));
             for at in flow.at(&targets, 1e-14).expect("targets far enough") {
                 assert!(
                     at.velocity.amax() <= 1e-13 && at.pressure.abs() <= 1e-12,

@@ -14,10 +14,11 @@ use panel_quadrature::QuadratureError;
 use super::discretization::Discretization;
 use super::factors::ModalFactors;
 use super::flow::Flow;
+use super::layers::{LayerWeights, Layers};
 use super::matrix::ModalMatrices;
 use super::rigid::{RigidMotion, Wrench};
 use super::surface::SurfaceModes;
-use crate::kernel::{CombinedField, DoubleLayer, LayerWeights, SingleLayer};
+use crate::kernel::{CombinedField, DoubleLayer, SingleLayer};
 use crate::progress::{Progress, Silent};
 use crate::special::toroidal;
 
@@ -149,8 +150,11 @@ impl DirichletSolver {
     }
 
     /// The flow of a density, for viscosity 1.
-    pub fn flow<'a>(&'a self, density: &'a SurfaceModes) -> Flow<'a> {
-        Flow::new(&self.discretization, density, self.weights)
+    pub fn flow(&self, density: &SurfaceModes) -> Flow<'_> {
+        Flow::new(
+            &self.discretization,
+            Layers::weighted(density, self.weights),
+        )
     }
 
     /// Force and torque (about the origin) that the body exerts on the fluid, for viscosity 1: of the single layer alone, since

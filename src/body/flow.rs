@@ -10,19 +10,20 @@ use std::sync::Arc;
 use nalgebra::{Point3, Vector3};
 use num_complex::Complex64;
 use panel_quadrature::QuadratureError;
+use rayon::prelude::*;
 use rustfft::{Fft, FftPlanner};
 
 use super::discretization::{Discretization, Node};
+use super::layers::Layers;
 use super::near::bernstein;
 use super::surface::{SurfaceModes, azimuths};
-use crate::kernel::{FlowAt, LayerWeights, SurfacePoints};
+use crate::kernel::{FlowAt, FlowGradientAt, SurfacePoint, SurfacePoints};
 
 /// The flow of a density on a body, for viscosity 1, in the body's frame.
 #[derive(Clone, Debug)]
 pub struct Flow<'a> {
     discretization: &'a Discretization,
-    density: &'a SurfaceModes,
-    weights: LayerWeights,
+    layers: Layers,
     /// The largest coefficient of a mode.
     largest: f64,
     /// Logarithm of each mode's largest coefficient relative to the largest of all.
@@ -71,18 +72,13 @@ const BENT: f64 = 0.9;
 const BELOW_LEFT_OUT: f64 = 21.0;
 
 impl<'a> Flow<'a> {
-    /// The flow of the layer potentials of `density`, weighted.
-    pub fn new(
-        discretization: &'a Discretization,
-        density: &'a SurfaceModes,
-        weights: LayerWeights,
-    ) -> Self {
-        let amplitudes: Vec<f64> = (0..density.modes()).map(|n| density.amplitude(n)).collect();
+    /// The flow of densities on the nodes of `discretization`.
+    pub fn new(discretization: &'a Discretization, layers: Layers) -> Self {
+        let amplitudes: Vec<f64> = (0..layers.modes()).map(|n| layers.amplitude(n)).collect();
         let largest = amplitudes.iter().fold(f64::MIN_POSITIVE, |a, &b| a.max(b));
         Self {
             discretization,
-            density,
-            weights,
+            layers,
             largest,
             mode_decay: amplitudes.iter().map(|&a| log_ratio(a, largest)).collect(),
         }
@@ -94,7 +90,32 @@ impl<'a> Flow<'a> {
     /// # Errors
     /// [`FlowError::TooNear`] for a target that the finest resampling does not resolve.
     pub fn at(&self, targets: &[Point3<f64>], tolerance: f64) -> Result<Vec<FlowAt>, FlowError> {
-        let amplitudes = legendre_amplitudes(self.discretization, self.density)?;
+        self.evaluate(targets, tolerance, SurfacePoints::flow)
+    }
+
+    /// The same with the velocity gradient, and so the stress.
+    ///
+    /// # Errors
+    /// As [`at`](Self::at).
+    pub fn gradient_at(
+        &self,
+        targets: &[Point3<f64>],
+        tolerance: f64,
+    ) -> Result<Vec<FlowGradientAt>, FlowError> {
+        self.evaluate(targets, tolerance, SurfacePoints::flow_gradient)
+    }
+
+    fn evaluate<T: Copy + Send>(
+        &self,
+        targets: &[Point3<f64>],
+        tolerance: f64,
+        sum: impl Fn(&SurfacePoints, Point3<f64>) -> T + Sync,
+    ) -> Result<Vec<T>, FlowError> {
+        let mut amplitudes = legendre_amplitudes(self.discretization, &self.layers.double)?;
+        let of_single = legendre_amplitudes(self.discretization, &self.layers.single)?;
+        for (amplitude, other) in amplitudes.iter_mut().zip(of_single) {
+            *amplitude = amplitude.max(other);
+        }
         let panel_decay: Vec<f64> = amplitudes
             .into_iter()
             .map(|a| log_ratio(a, self.largest))
@@ -119,26 +140,24 @@ impl<'a> Flow<'a> {
             };
             by_level[level as usize].push(index);
         }
-        let nothing = FlowAt {
-            velocity: Vector3::zeros(),
-            pressure: 0.0,
-        };
-        let mut flow = vec![nothing; targets.len()];
+        let mut flow = vec![None; targets.len()];
         for (level, indices) in by_level.into_iter().enumerate() {
             if indices.is_empty() {
                 continue;
             }
             let points = self.resample(level as u32)?;
-            let some: Vec<_> = indices.iter().map(|&i| targets[i]).collect();
-            for (i, at) in indices.into_iter().zip(points.flow(self.weights, &some)) {
-                flow[i] = at;
+            let found: Vec<T> = (indices.par_iter())
+                .map(|&i| sum(&points, targets[i]))
+                .collect();
+            for (i, at) in indices.into_iter().zip(found) {
+                flow[i] = Some(at);
             }
         }
-        Ok(flow)
+        Ok(flow.into_iter().flatten().collect())
     }
 
     fn azimuths(&self, level: u32) -> usize {
-        azimuths(self.density.modes().max(16)) << level
+        azimuths(self.layers.modes().max(16)) << level
     }
 
     /// Digits (natural logarithm) beyond which the density's own expansion leaves nothing to resolve.
@@ -214,7 +233,7 @@ impl<'a> Flow<'a> {
         let count = self.azimuths(level);
         let fft: Arc<dyn Fft<f64>> = FftPlanner::new().plan_fft_inverse(count);
         let mut ring = vec![Complex64::default(); count];
-        let mut components = vec![[0.0; 3]; count];
+        let mut components = vec![[0.0; 6]; count];
         let mut row = vec![0.0; order];
         let panels = discretization.panels().len();
         let mut points = SurfacePoints::with_capacity(panels * order * parts * count);
@@ -229,27 +248,35 @@ impl<'a> Flow<'a> {
                     basis.interpolation_row(t, &mut row)?;
                     let ds = 0.5 * whole.length() * w / parts as f64;
                     let node = Node::new(&**discretization.curve(), whole.at(t), ds);
-                    for j in 0..3 {
-                        self.spectrum(panel * order, &row, j, &mut ring);
-                        fft.process(&mut ring);
-                        for (components, value) in components.iter_mut().zip(&ring) {
-                            components[j] = value.re;
+                    for (k, density) in [&self.layers.double, &self.layers.single]
+                        .into_iter()
+                        .enumerate()
+                    {
+                        for j in 0..3 {
+                            spectrum(density, panel * order, &row, j, &mut ring);
+                            fft.process(&mut ring);
+                            for (components, value) in components.iter_mut().zip(&ring) {
+                                components[3 * k + j] = value.re;
+                            }
                         }
                     }
                     let area = node.weight * 2.0 * PI / count as f64;
-                    for (&(sin, cos), &[radial, azimuthal, axial]) in
-                        rotation.iter().zip(&components)
-                    {
-                        let [nu_r, nu_z] = node.normal;
-                        points.push(
-                            Vector3::new(node.r * cos, node.r * sin, node.z),
-                            Vector3::new(nu_r * cos, nu_r * sin, nu_z),
-                            area * Vector3::new(
+                    for (&(sin, cos), components) in rotation.iter().zip(&components) {
+                        let turned = |[radial, azimuthal, axial]: [f64; 3]| {
+                            Vector3::new(
                                 radial * cos - azimuthal * sin,
                                 radial * sin + azimuthal * cos,
                                 axial,
-                            ),
-                        );
+                            )
+                        };
+                        let [a, b, c, d, e, f] = *components;
+                        let [nu_r, nu_z] = node.normal;
+                        points.push(SurfacePoint {
+                            position: turned([node.r, 0.0, node.z]),
+                            normal: turned([nu_r, 0.0, nu_z]),
+                            double: area * turned([a, b, c]),
+                            single: area * turned([d, e, f]),
+                        });
                     }
                 }
             }
@@ -257,24 +284,24 @@ impl<'a> Flow<'a> {
         points.pad();
         Ok(points)
     }
+}
 
-    /// The complex spectrum of component `j`, interpolated with `row` on the panel whose first node is `first`; its inverse
-    /// transform has the component as real part.
-    fn spectrum(&self, first: usize, row: &[f64], j: usize, ring: &mut [Complex64]) {
-        ring.fill(Complex64::default());
-        let interpolate = |n: usize, family: usize| -> f64 {
-            let values = &self.density.component(n, family, j)[first..][..row.len()];
-            values.iter().zip(row).map(|(x, l)| x * l).sum()
+/// The complex spectrum of component `j`, interpolated with `row` on the panel whose first node is `first`; its inverse
+/// transform has the component as real part.
+fn spectrum(density: &SurfaceModes, first: usize, row: &[f64], j: usize, ring: &mut [Complex64]) {
+    ring.fill(Complex64::default());
+    let interpolate = |n: usize, family: usize| -> f64 {
+        let values = &density.component(n, family, j)[first..][..row.len()];
+        values.iter().zip(row).map(|(x, l)| x * l).sum()
+    };
+    for (n, ring) in ring.iter_mut().enumerate().take(density.modes()) {
+        let (first, second) = (interpolate(n, 0), interpolate(n, 1));
+        // Re((c - i s) e^{i n theta}) = c cos + s sin.
+        *ring = if j == 1 {
+            Complex64::new(-second, -first)
+        } else {
+            Complex64::new(first, -second)
         };
-        for (n, ring) in ring.iter_mut().enumerate().take(self.density.modes()) {
-            let (first, second) = (interpolate(n, 0), interpolate(n, 1));
-            // Re((c - i s) e^{i n theta}) = c cos + s sin.
-            *ring = if j == 1 {
-                Complex64::new(-second, -first)
-            } else {
-                Complex64::new(first, -second)
-            };
-        }
     }
 }
 

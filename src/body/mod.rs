@@ -10,6 +10,7 @@
 //! | [`surface`] | vector fields on the surface and their modes |
 //! | [`factors`] | factors of the modal matrices, which belong to the shape |
 //! | [`frame`] | the body's frame and the laboratory's |
+//! | [`layers`] | the layer potentials that make up a flow |
 //! | [`flow`] | velocity and pressure away from the body |
 //! | [`problem`] | exterior problems, answered with an estimate of the error |
 //! | [`rigid`] | rigid motions, force and torque |
@@ -19,6 +20,7 @@ pub mod discretization;
 pub mod factors;
 pub mod flow;
 pub mod frame;
+pub mod layers;
 pub mod matrix;
 mod near;
 #[cfg(test)]

@@ -107,6 +107,17 @@ impl SurfaceModes {
         self
     }
 
+    /// The field times a number; none of its modes but the zeroth if that is zero.
+    pub fn scaled(&self, factor: f64) -> Self {
+        if factor == 0.0 {
+            return Self::zero(0, self.nodes);
+        }
+        Self {
+            values: self.values.iter().map(|x| factor * x).collect(),
+            ..*self
+        }
+    }
+
     /// Modes, counting the zeroth.
     pub fn modes(&self) -> usize {
         self.modes

@@ -1,9 +1,10 @@
 //! What `benches/` reach the kernels by; no part of the library's interface.
 
 use nalgebra::{Point3, Vector3};
+use rayon::prelude::*;
 
 use super::{
-    CombinedField, FlowAt, LayerWeights, Modes, SourceRings, SurfacePoints, TargetRing, Workspace,
+    CombinedField, FlowAt, Modes, SourceRings, SurfacePoint, SurfacePoints, TargetRing, Workspace,
 };
 
 /// How the modes of a pair are found.
@@ -67,7 +68,12 @@ impl DirectSum {
         let mut points = SurfacePoints::with_capacity(count);
         for k in 0..count {
             let x = Vector3::new(k as f64, 1.0, -1.0);
-            points.push(x, Vector3::z(), Vector3::x());
+            points.push(SurfacePoint {
+                position: x,
+                normal: Vector3::z(),
+                double: Vector3::x(),
+                single: Vector3::x(),
+            });
         }
         points.pad();
         Self(points)
@@ -75,10 +81,6 @@ impl DirectSum {
 
     /// The flow at targets.
     pub fn flow(&self, targets: &[Point3<f64>]) -> Vec<FlowAt> {
-        let weights = LayerWeights {
-            double: 1.0,
-            single: 1.0,
-        };
-        self.0.flow(weights, targets)
+        targets.par_iter().map(|&x| self.0.flow(x)).collect()
     }
 }

@@ -2,28 +2,19 @@
 
 use std::f64::consts::PI;
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Matrix3, Point3, Vector3};
 use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 
 use crate::special::lanes::{Lanes, PADDING};
 
-/// Points of a surface that carry a combined field, in structure-of-arrays form.
+/// Points of a surface that carry a double and a single layer, in structure-of-arrays form.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SurfacePoints {
     position: [Vec<f64>; 3],
     normal: [Vec<f64>; 3],
-    /// Density times the point's share of the area.
-    strength: [Vec<f64>; 3],
-}
-
-/// How much of each layer potential of a density makes up a flow: $u = w_D D[\sigma] + w_S S[\sigma]$.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LayerWeights {
-    /// Weight $w_D$ of the double layer, a number.
-    pub double: f64,
-    /// Weight $w_S$ of the single layer; beside a double layer, in units of 1/length.
-    pub single: f64,
+    /// Densities times the point's share of the area.
+    double: [Vec<f64>; 3],
+    single: [Vec<f64>; 3],
 }
 
 /// Velocity and pressure at a point, for viscosity 1.
@@ -35,76 +26,120 @@ pub struct FlowAt {
     pub pressure: f64,
 }
 
+/// Velocity, pressure and velocity gradient at a point, for viscosity 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlowGradientAt {
+    /// Velocity.
+    pub velocity: Vector3<f64>,
+    /// Pressure, zero at infinity.
+    pub pressure: f64,
+    /// Velocity gradient, $\partial u_i / \partial x_j$ in row $i$ and column $j$; in units of 1/time.
+    pub gradient: Matrix3<f64>,
+}
+
+impl FlowGradientAt {
+    /// The stress $-p I + \nabla u + (\nabla u)^\mathsf{T}$.
+    pub fn stress(&self) -> Matrix3<f64> {
+        self.gradient + self.gradient.transpose() - Matrix3::from_diagonal_element(self.pressure)
+    }
+}
+
+impl From<FlowGradientAt> for FlowAt {
+    fn from(at: FlowGradientAt) -> Self {
+        Self {
+            velocity: at.velocity,
+            pressure: at.pressure,
+        }
+    }
+}
+
+/// One point of a surface, with its share of the layers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SurfacePoint {
+    pub position: Vector3<f64>,
+    pub normal: Vector3<f64>,
+    /// Densities times the point's share of the area.
+    pub double: Vector3<f64>,
+    pub single: Vector3<f64>,
+}
+
 impl SurfacePoints {
     pub fn with_capacity(count: usize) -> Self {
         let buffers = || std::array::from_fn(|_| Vec::with_capacity(count + PADDING));
         Self {
             position: buffers(),
             normal: buffers(),
-            strength: buffers(),
+            double: buffers(),
+            single: buffers(),
         }
     }
 
-    pub fn push(&mut self, position: Vector3<f64>, normal: Vector3<f64>, strength: Vector3<f64>) {
+    pub fn push(&mut self, point: SurfacePoint) {
         for k in 0..3 {
-            self.position[k].push(position[k]);
-            self.normal[k].push(normal[k]);
-            self.strength[k].push(strength[k]);
+            self.position[k].push(point.position[k]);
+            self.normal[k].push(point.normal[k]);
+            self.double[k].push(point.double[k]);
+            self.single[k].push(point.single[k]);
         }
     }
 
     /// Completes the last register with points far away from everything, of no strength.
     pub fn pad(&mut self) {
         while !self.position[0].len().is_multiple_of(PADDING) {
-            self.push(Vector3::repeat(1e100), Vector3::zeros(), Vector3::zeros());
+            self.push(SurfacePoint {
+                position: Vector3::repeat(1e100),
+                normal: Vector3::zeros(),
+                double: Vector3::zeros(),
+                single: Vector3::zeros(),
+            });
         }
     }
 
-    /// Velocity and pressure of the layer potentials at every target, the sum in the order of the points; parallel over targets.
-    pub fn flow(&self, weights: LayerWeights, targets: &[Point3<f64>]) -> Vec<FlowAt> {
-        targets
-            .par_iter()
-            .map(|&target| {
-                Arch::new().dispatch(Sum {
-                    points: self,
-                    weights,
-                    target,
-                })
+    /// Velocity and pressure of both layers at a point, summed in the order of the points.
+    pub fn flow(&self, target: Point3<f64>) -> FlowAt {
+        Arch::new()
+            .dispatch(Sum::<false> {
+                points: self,
+                target,
             })
-            .collect()
+            .into()
+    }
+
+    /// The same with the velocity gradient.
+    pub fn flow_gradient(&self, target: Point3<f64>) -> FlowGradientAt {
+        Arch::new().dispatch(Sum::<true> {
+            points: self,
+            target,
+        })
     }
 }
 
-struct Sum<'a> {
+struct Sum<'a, const GRADIENT: bool> {
     points: &'a SurfacePoints,
-    weights: LayerWeights,
     target: Point3<f64>,
 }
 
-impl WithSimd for Sum<'_> {
-    type Output = FlowAt;
+impl<const GRADIENT: bool> WithSimd for Sum<'_, GRADIENT> {
+    type Output = FlowGradientAt;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> FlowAt {
-        let Self {
-            points,
-            weights,
-            target,
-        } = self;
+    fn with_simd<S: Simd>(self, simd: S) -> FlowGradientAt {
+        let Self { points, target } = self;
         let splat = |x| Lanes::splat(simd, x);
         let target = [splat(target.x), splat(target.y), splat(target.z)];
         let [x, y, z] = points.position.each_ref().map(|b| S::as_simd_f64s(b).0);
         let [nx, ny, nz] = points.normal.each_ref().map(|b| S::as_simd_f64s(b).0);
-        let [fx, fy, fz] = points.strength.each_ref().map(|b| S::as_simd_f64s(b).0);
+        let [fx, fy, fz] = points.double.each_ref().map(|b| S::as_simd_f64s(b).0);
+        let [gx, gy, gz] = points.single.each_ref().map(|b| S::as_simd_f64s(b).0);
         let mut velocity = [splat(0.0); 3];
         let mut pressure = splat(0.0);
+        let mut gradient = [[splat(0.0); 3]; 3];
         let one = splat(1.0);
         // Common factor 1/(8 pi) left to the end.
-        let (six, four) = (splat(6.0 * weights.double), splat(4.0 * weights.double));
-        let (single, twice) = (splat(weights.single), splat(2.0 * weights.single));
         for i in 0..x.len() {
             let position = [Lanes(simd, x[i]), Lanes(simd, y[i]), Lanes(simd, z[i])];
             let f = [Lanes(simd, fx[i]), Lanes(simd, fy[i]), Lanes(simd, fz[i])];
+            let g = [Lanes(simd, gx[i]), Lanes(simd, gy[i]), Lanes(simd, gz[i])];
             let n = [Lanes(simd, nx[i]), Lanes(simd, ny[i]), Lanes(simd, nz[i])];
             let d = [
                 target[0] - position[0],
@@ -114,23 +149,35 @@ impl WithSimd for Sum<'_> {
             let inv2 = one / dot(&d, &d);
             let inv = inv2.sqrt();
             let inv3 = inv * inv2;
-            let (df, dn, nf) = (dot(&d, &f), dot(&d, &n), dot(&n, &f));
-            // 6 w_D (d.f)(d.n)/|d|^5 + w_S (d.f)/|d|^3 along d, w_S/|d| along f.
-            let stresslet = six * dn * inv2;
-            let along_d = df * inv3 * (stresslet + single);
-            let along_f = single * inv;
+            let (df, dg, dn, nf) = (dot(&d, &f), dot(&d, &g), dot(&d, &n), dot(&n, &f));
+            // u = (6 (d.f)(d.n)/|d|^5 + (d.g)/|d|^3) d + g/|d|.
+            let both = 6.0 * df * dn * inv2;
+            let along_d = inv3 * (both + dg);
             for k in 0..3 {
-                velocity[k] = velocity[k] + along_d.mul_add(d[k], along_f * f[k]);
+                velocity[k] = velocity[k] + along_d.mul_add(d[k], inv * g[k]);
             }
-            // 4 w_D (-n.f + 3 (d.f)(d.n)/|d|^2)/|d|^3 + 2 w_S (d.f)/|d|^3.
-            let in_brackets = df.mul_add(2.0 * stresslet + twice, -(four * nf));
-            pressure = inv3.mul_add(in_brackets, pressure);
+            // p = 4 (-n.f + 3 (d.f)(d.n)/|d|^2)/|d|^3 + 2 (d.g)/|d|^3.
+            pressure = inv3.mul_add(2.0 * (both + dg) - 4.0 * nf, pressure);
+            if GRADIENT {
+                // du_i/dx_j = d_i w_j + (along_d) delta_ij - g_i d_j/|d|^3.
+                let inv5 = 6.0 * inv3 * inv2;
+                let (along_f, along_n) = (dn * inv5, df * inv5);
+                let radial = -(inv3 * inv2) * (5.0 * both + 3.0 * dg);
+                for j in 0..3 {
+                    let w = radial * d[j] + inv3 * g[j] + along_f * f[j] + along_n * n[j];
+                    let away = inv3 * d[j];
+                    for k in 0..3 {
+                        gradient[k][j] = d[k].mul_add(w, gradient[k][j] - away * g[k]);
+                    }
+                    gradient[j][j] = gradient[j][j] + along_d;
+                }
+            }
         }
         let factor = 1.0 / (8.0 * PI);
-        FlowAt {
-            velocity: Vector3::new(velocity[0].sum(), velocity[1].sum(), velocity[2].sum())
-                * factor,
-            pressure: pressure.sum() * factor,
+        FlowGradientAt {
+            velocity: Vector3::from_fn(|k, _| factor * velocity[k].sum()),
+            pressure: factor * pressure.sum(),
+            gradient: Matrix3::from_fn(|i, j| factor * gradient[i][j].sum()),
         }
     }
 }

@@ -40,8 +40,8 @@ mod tests;
 mod traction;
 
 pub(crate) use combined::CombinedField;
-pub(crate) use direct::SurfacePoints;
-pub use direct::{FlowAt, LayerWeights};
+pub use direct::{FlowAt, FlowGradientAt};
+pub(crate) use direct::{SurfacePoint, SurfacePoints};
 pub(crate) use double_layer::DoubleLayer;
 pub(crate) use modes::{Kernel, Modes, SourceRings, TargetRing, Workspace};
 pub(crate) use pressure::{DoubleLayerPressure, SingleLayerPressure};

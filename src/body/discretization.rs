@@ -35,14 +35,19 @@ pub struct Node {
 impl Node {
     /// The node at parameter `s` with quadrature weight `ds`.
     pub(crate) fn new(curve: &dyn GeneratingCurve, s: f64, ds: f64) -> Self {
-        let (point, tangent) = (curve.point(s), curve.tangent(s));
+        Self::on_ring(curve, s, curve.point(s).r, ds)
+    }
+
+    /// The same with a radius that is known better than from the parameter.
+    pub(crate) fn on_ring(curve: &dyn GeneratingCurve, s: f64, r: f64, ds: f64) -> Self {
+        let tangent = curve.tangent(s);
         let speed = tangent.r.hypot(tangent.z);
         Self {
             s,
-            r: point.r,
-            z: point.z,
+            r,
+            z: curve.point(s).z,
             normal: [-tangent.z / speed, tangent.r / speed],
-            weight: ds * speed * point.r,
+            weight: ds * speed * r,
         }
     }
 }

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use nalgebra::{Point3, Unit, Vector3};
 
 use crate::body::dirichlet;
-use crate::body::flow::FlowError;
 use crate::body::frame::Frame;
 use crate::body::problem::{Answer, BoundaryVelocity, Problem, ProblemError, Resolution};
 use crate::body::rigid::RigidMotion;
@@ -233,22 +232,6 @@ impl<'a> Setting<'a> {
                 .into()
         };
         match error {
-            ProblemError::Flow(FlowError::TooNear {
-                index,
-                tolerance,
-                least,
-                ..
-            }) => {
-                // The flow is evaluated more precisely than was asked for.
-                let tolerance = self.case.tolerance().unwrap_or(tolerance);
-                let probe = &self.case.probes[index];
-                let message = format!(
-                    "probes.points: {:?} is too near to the surface for a tolerance of {tolerance:e}: \
-                     expected a distance of about {least:.1e} or more (close evaluation is not supported yet)",
-                    probe.value
-                );
-                self.case.error(probe.line, message).into()
-            }
             ProblemError::Curve(error) => at_shape(&error),
             other => SolveError::Failed(other.to_string()),
         }

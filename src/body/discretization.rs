@@ -15,6 +15,7 @@ pub struct Discretization {
     basis: Arc<PanelBasis>,
     nodes: Vec<Node>,
     arc_lengths: Vec<f64>,
+    ends: Vec<[[f64; 2]; 2]>,
 }
 
 /// A point of a generating curve with its geometry.
@@ -72,12 +73,18 @@ impl Discretization {
             let last = &nodes[nodes.len() - order..];
             arc_lengths.push(last.iter().map(|node| node.weight / node.r).sum());
         }
+        let end = |s: f64| {
+            let point = curve.point(s);
+            [point.r, point.z]
+        };
+        let ends = panels.iter().map(|p| [p.start, p.end].map(end)).collect();
         Ok(Self {
             curve,
             panels,
             basis,
             nodes,
             arc_lengths,
+            ends,
         })
     }
 
@@ -118,6 +125,11 @@ impl Discretization {
     /// Arc length of a panel.
     pub fn arc_length(&self, panel: usize) -> f64 {
         self.arc_lengths[panel]
+    }
+
+    /// Radius and height of a panel's ends.
+    pub(crate) fn ends(&self, panel: usize) -> [[f64; 2]; 2] {
+        self.ends[panel]
     }
 
     /// Area of the surface.

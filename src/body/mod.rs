@@ -11,13 +11,16 @@
 //! | [`factors`] | factors of the modal matrices, which belong to the shape |
 //! | [`frame`] | the body's frame and the laboratory's |
 //! | [`layers`] | the layer potentials that make up a flow |
-//! | [`flow`] | velocity and pressure away from the body |
+//! | [`flow`] | velocity, pressure and stress at any point |
 //! | [`problem`] | exterior problems, answered with an estimate of the error |
 //! | [`rigid`] | rigid motions, force and torque |
 
+mod close;
+mod densities;
 pub mod dirichlet;
 pub mod discretization;
 pub mod factors;
+mod far;
 pub mod flow;
 pub mod frame;
 pub mod layers;

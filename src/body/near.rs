@@ -151,7 +151,7 @@ impl NearRules {
 
     /// Whether the panel's own nodes resolve its action on a point off it.
     pub fn is_far(&self, discretization: &Discretization, point: Meridian, panel: usize) -> bool {
-        let ends = panel_ends(discretization, panel);
+        let ends = discretization.ends(panel);
         let length = discretization.arc_length(panel);
         bernstein([point.r, point.z], ends, length) >= self.far
             && bernstein([-point.r, point.z], ends, length) >= self.far
@@ -170,7 +170,7 @@ impl NearRules {
         let at = &discretization.nodes_of(home)[target];
         let sight = Sight::on(at);
         let length = discretization.arc_length(panel);
-        let mirror = bernstein([-at.r, at.z], panel_ends(discretization, panel), length);
+        let mirror = bernstein([-at.r, at.z], discretization.ends(panel), length);
         let half = 0.5 * discretization.panel(panel).length();
         if mirror >= self.far && length <= self.longest_kolm_rokhlin * at.r {
             let order = discretization.order();
@@ -314,14 +314,6 @@ impl NearRules {
 fn projection(a: [f64; 2], b: [f64; 2]) -> f64 {
     let d = [b[0] - a[0], b[1] - a[1]];
     -(a[0] * d[0] + a[1] * d[1]) / (d[0] * d[0] + d[1] * d[1])
-}
-
-fn panel_ends(discretization: &Discretization, panel: usize) -> [[f64; 2]; 2] {
-    let panel = discretization.panel(panel);
-    [panel.start, panel.end].map(|s| {
-        let point = discretization.curve().point(s);
-        [point.r, point.z]
-    })
 }
 
 /// On which side of the source panel the target's panel `home` lies, if it is as long and next to it on the same smooth piece.

@@ -46,19 +46,6 @@ fn inside() -> Known {
     )
 }
 
-fn outside() -> Known {
-    let mut random = fastrand::Rng::with_seed(8);
-    let mut number = || 2.0 * random.f64() - 1.0;
-    Known(
-        (0..5)
-            .map(|_| Stokeslet {
-                at: 2.0 * Vector3::new(number(), number(), number()).normalize(),
-                force: Vector3::new(number(), number(), number()),
-            })
-            .collect(),
-    )
-}
-
 /// Points at a distance from random places of the surface, the poles among them, on one side.
 fn targets(
     curve: &dyn GeneratingCurve,

@@ -82,6 +82,8 @@ pub mod study;
 pub use nalgebra;
 
 #[doc(inline)]
+pub use body::body_flow::BodyFlow;
+#[doc(inline)]
 pub use body::dirichlet::{DirichletSolver, Formulation};
 #[doc(inline)]
 pub use body::discretization::Discretization;
@@ -89,6 +91,8 @@ pub use body::discretization::Discretization;
 pub use body::flow::{Flow, FlowError};
 #[doc(inline)]
 pub use body::frame::Frame;
+#[doc(inline)]
+pub use body::linear_flow::LinearFlow;
 #[doc(inline)]
 pub use body::problem::{Answer, BoundaryVelocity, Problem, ProblemError, Resolution};
 #[doc(inline)]

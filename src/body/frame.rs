@@ -29,6 +29,11 @@ impl Frame {
             .into()
     }
 
+    /// A point of the body's frame, in the laboratory.
+    pub fn point_to_lab(&self, point: Point3<f64>) -> Point3<f64> {
+        self.center + self.rotation * point.coords
+    }
+
     /// A vector of the laboratory, in the body's frame.
     pub fn vector_to_body(&self, vector: Vector3<f64>) -> Vector3<f64> {
         self.rotation.inverse_transform_vector(&vector)
@@ -57,6 +62,8 @@ mod tests {
             assert!((frame.vector_to_lab(Vector3::z()) - *axis).norm() < 1e-15);
             let x = Vector3::new(0.3, -0.4, 0.5);
             assert!((frame.vector_to_body(frame.vector_to_lab(x)) - x).norm() < 1e-15);
+            let point = Point3::from(x);
+            assert!((frame.point_to_body(frame.point_to_lab(point)) - point).norm() < 1e-14);
             let on_axis = frame.point_to_body(frame.center + *axis * 2.0);
             assert!((on_axis.coords - Vector3::new(0.0, 0.0, 2.0)).norm() < 1e-14);
         }

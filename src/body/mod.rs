@@ -12,15 +12,19 @@
 //! | [`frame`] | the body's frame and the laboratory's |
 //! | [`layers`] | the layer potentials that make up a flow |
 //! | [`flow`] | velocity and pressure away from the body |
+//! | [`linear_flow`] | undisturbed flows |
+//! | [`body_flow`] | the whole flow, as it was solved for |
 //! | [`problem`] | exterior problems, answered with an estimate of the error |
 //! | [`rigid`] | rigid motions, force and torque |
 
+pub mod body_flow;
 pub mod dirichlet;
 pub mod discretization;
 pub mod factors;
 pub mod flow;
 pub mod frame;
 pub mod layers;
+pub mod linear_flow;
 pub mod matrix;
 mod near;
 #[cfg(test)]

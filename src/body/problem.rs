@@ -11,9 +11,12 @@ use std::time::Instant;
 use nalgebra::{Point3, Vector3};
 use panel_quadrature::QuadratureError;
 
+use super::body_flow::BodyFlow;
 use super::dirichlet::{DirichletSolver, Formulation, Seconds};
 use super::discretization::Discretization;
 use super::flow::FlowError;
+use super::layers::Layers;
+use super::linear_flow::LinearFlow;
 use super::rigid::{RigidMotion, Wrench};
 use super::surface::SurfaceModes;
 use crate::curve::{CurveError, GeneratingCurve, Panels};
@@ -61,6 +64,8 @@ pub struct Answer {
     pub wrench: Wrench,
     /// Velocity and pressure at the targets.
     pub flow: Vec<FlowAt>,
+    /// The flow everywhere.
+    pub body_flow: BodyFlow,
     /// Estimated error: of the velocities relative to the largest speed imposed, and of force and torque relative to the larger
     /// of the two (a force times the body's size counting as torque).
     pub error_estimate: f64,
@@ -153,7 +158,7 @@ fn checking_modes(modes: usize) -> usize {
 ///
 /// The factors are not kept: two solutions are alive at a time, and the factors are most of what they would hold.
 struct Solution {
-    discretization: Discretization,
+    body_flow: BodyFlow,
     unknowns: usize,
     seconds: Seconds,
     density: SurfaceModes,
@@ -192,7 +197,7 @@ impl Problem<'_> {
         progress: &dyn Progress,
     ) -> Result<Answer, ProblemError> {
         let begin = Instant::now();
-        let evaluation = (1e-3 * tolerance).max(EVALUATION);
+        let evaluation = evaluation_tolerance(Some(tolerance));
         let first = Panels::resolving(&*self.curve, ORDER, tolerance.sqrt().clamp(1e-7, 1e-2))?
             .graded_across_joints(&*self.curve);
         let mut resolution = Resolution {
@@ -276,14 +281,25 @@ impl Problem<'_> {
             DirichletSolver::new(discretization, self.formulation, resolution.modes, progress)?;
         let start = Instant::now();
         let density = solver.solve(&data);
-        let wrench = solver.wrench(&density);
+        let (motion, slip) = match self.velocity {
+            BoundaryVelocity::Rigid(motion) => (motion, SurfaceModes::zero(0, data.nodes())),
+            BoundaryVelocity::Field(_) => (RigidMotion::rest(), data),
+        };
+        let body_flow = BodyFlow {
+            discretization: solver.discretization().clone(),
+            layers: Layers::weighted(&density, solver.weights()),
+            background: LinearFlow::rest(),
+            motion,
+            slip,
+        };
+        let wrench = body_flow.wrench();
         let solve = start.elapsed().as_secs_f64();
         let start = Instant::now();
         progress.begin("evaluating", 0);
-        let flow = solver.flow(&density).at(self.targets, evaluation)?;
+        let flow = body_flow.at(self.targets, evaluation)?;
         let evaluate = start.elapsed().as_secs_f64();
         Ok(Solution {
-            discretization: solver.discretization().clone(),
+            body_flow,
             unknowns: solver.unknowns(),
             seconds: solver.seconds(),
             density,
@@ -369,6 +385,11 @@ impl Problem<'_> {
 /// Tolerance of the flow's quadrature where the best is wanted.
 const EVALUATION: f64 = 1e-15;
 
+/// Tolerance of the flow's quadrature for an answer to a tolerance, or the best there is.
+pub(crate) fn evaluation_tolerance(tolerance: Option<f64>) -> f64 {
+    (1e-3 * tolerance.unwrap_or(0.0)).max(EVALUATION)
+}
+
 impl Solution {
     fn seconds(&self) -> f64 {
         let Seconds { assemble, factor } = self.seconds;
@@ -383,19 +404,22 @@ impl Solution {
     /// $A^2 / 12\pi a V$ for area, size and volume: 1 for a sphere and about that for a needle, but the aspect ratio of a disc, whose two
     /// faces nearly cancel and lose as many digits.
     fn thinness(&self) -> f64 {
-        let nodes = self.discretization.nodes();
+        let nodes = self.body_flow.discretization.nodes();
         // The volume is a third of the flux of the position, x . nu.
         let flux: f64 = nodes
             .iter()
             .map(|n| n.weight * (n.r * n.normal[0] + n.z * n.normal[1]))
             .sum();
-        let (area, size) = (self.discretization.area(), self.discretization.size());
+        let (area, size) = (
+            self.body_flow.discretization.area(),
+            self.body_flow.discretization.size(),
+        );
         (area * area / (8.0 * PI * PI * size * flux)).max(1.0)
     }
 
     /// How far the answers of two solutions are apart, in the units of [`Answer::error_estimate`].
     fn difference(&self, other: &Self) -> f64 {
-        let size = self.discretization.size();
+        let size = self.body_flow.discretization.size();
         let velocity = (self.flow.iter().zip(&other.flow))
             .map(|(a, b)| (a.velocity - b.velocity).norm())
             .fold(0.0, f64::max);
@@ -418,19 +442,21 @@ impl Solution {
     ///
     /// The difference of two densities would not do: what one panel misses spreads over all.
     fn unresolved_panels(&self) -> Result<Vec<bool>, QuadratureError> {
-        let order = self.discretization.order();
-        let mut missed = vec![0.0; self.discretization.panels().len()];
+        let order = self.body_flow.discretization.order();
+        let mut missed = vec![0.0; self.body_flow.discretization.panels().len()];
         for n in 0..self.density.modes() {
             for k in 0..6 {
                 let values = self.density.component(n, k / 3, k % 3);
                 for (values, missed) in values.chunks(order).zip(&mut missed) {
-                    let coefficients = self.discretization.basis().coefficients(values)?;
+                    let coefficients =
+                        self.body_flow.discretization.basis().coefficients(values)?;
                     *missed += coefficients[order - 2..].iter().map(|c| c * c).sum::<f64>();
                 }
             }
         }
         for (panel, missed) in missed.iter_mut().enumerate() {
             *missed *= self
+                .body_flow
                 .discretization
                 .nodes_of(panel)
                 .iter()
@@ -457,6 +483,7 @@ impl Solution {
             wrench: self.wrench,
             unknowns: self.unknowns,
             flow: self.flow,
+            body_flow: self.body_flow,
             error_estimate,
             resolution,
             largest_speed: self.largest_speed,

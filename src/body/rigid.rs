@@ -26,6 +26,14 @@ pub struct Wrench {
 }
 
 impl RigidMotion {
+    /// No motion.
+    pub fn rest() -> Self {
+        Self {
+            velocity: Vector3::zeros(),
+            angular_velocity: Vector3::zeros(),
+        }
+    }
+
     /// The velocity at `x`.
     pub fn at(&self, x: Vector3<f64>) -> Vector3<f64> {
         self.velocity + self.angular_velocity.cross(&x)

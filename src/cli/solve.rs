@@ -12,7 +12,7 @@ use axistokes::solve::{SolveError, solve};
 pub fn run(arguments: &Solve) -> Result<(), Failure> {
     let case = Case::read(&arguments.case).map_err(SolveError::from)?;
     let bar = StderrBar::new();
-    let report = solve(&case, &bar)?;
+    let report = solve(&case, &bar)?.report;
     drop(bar);
     let line = |message: &str| CaseError::new(case.path.display(), None, message).to_string();
     if let Some(name) = report.not_finite() {

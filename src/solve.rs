@@ -3,17 +3,17 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use nalgebra::{Point3, Unit, Vector3};
+use nalgebra::{Matrix3, Point3, Unit, Vector3};
 
 use crate::body::body_flow::BodyFlow;
 use crate::body::dirichlet;
 use crate::body::flow::FlowError;
 use crate::body::frame::Frame;
-use crate::body::problem::{
-    Answer, BoundaryVelocity, Problem, ProblemError, Resolution, evaluation_tolerance,
-};
-use crate::body::rigid::RigidMotion;
-use crate::case::{Accuracy, Body, Case, CaseError, Formulation, Motion};
+use crate::body::linear_flow::LinearFlow;
+use crate::body::problem::{self, Answer, Problem, ProblemError, Resolution, evaluation_tolerance};
+use crate::body::rigid::{RigidMotion, Wrench};
+use crate::body::slip::{pole_to_pole, squirmer};
+use crate::case::{Accuracy, Background, Body, Case, CaseError, Formulation, Motion, Slip};
 use crate::curve::{GeneratingCurve, Meridian, Outline, Panels};
 use crate::kernel::{FlowAt, Stokeslet};
 use crate::output::{BodyReport, Discretization, KnownFlowReport, ProbeReport, Report, Timings};
@@ -161,19 +161,20 @@ pub fn solve(case: &Case, progress: &dyn Progress) -> Result<Solved, SolveError>
         .collect();
     let known = setting.known_flow()?;
     let field = |x: Vector3<f64>| known.iter().map(|s| s.velocity(x)).sum::<Vector3<f64>>();
-    let velocity = if case.test.is_some() {
-        BoundaryVelocity::Field(&field)
-    } else {
-        BoundaryVelocity::Rigid(setting.motion())
-    };
+    let slip = setting.slip();
     let problem = Problem {
-        curve: setting.curve.clone(),
-        velocity,
+        motion: setting.motion(),
+        slip: match (&case.test, &slip) {
+            (Some(_), _) => Some(&field),
+            (None, slip) => slip.as_deref(),
+        },
+        background: setting.background(),
         targets: &targets,
         formulation: match case.solver.formulation {
             Formulation::SingleLayer => dirichlet::Formulation::SingleLayer,
             _ => dirichlet::Formulation::CombinedField,
         },
+        ..Problem::new(setting.curve.clone())
     };
     let answer = match case.accuracy {
         Accuracy::Tolerance(tolerance) => problem.to_tolerance(tolerance, progress),
@@ -222,6 +223,9 @@ pub fn solve(case: &Case, progress: &dyn Progress) -> Result<Solved, SolveError>
         tolerance: evaluation_tolerance(case.tolerance()),
     })
 }
+
+/// A velocity as a function of the point.
+type Velocity<'a> = dyn Fn(Vector3<f64>) -> Vector3<f64> + Sync + 'a;
 
 /// A case's one body, ready to be computed with.
 struct Setting<'a> {
@@ -281,29 +285,72 @@ impl<'a> Setting<'a> {
             .collect())
     }
 
-    /// The body's motion in its own frame.
-    fn motion(&self) -> RigidMotion {
-        let (velocity, angular_velocity) = self.imposed();
-        RigidMotion {
-            velocity: self.frame.vector_to_body(velocity.into()),
-            angular_velocity: self.frame.vector_to_body(angular_velocity.into()),
-        }
-    }
-
-    fn imposed(&self) -> ([f64; 3], [f64; 3]) {
+    /// What is imposed on the body, in its own frame and at viscosity 1.
+    fn motion(&self) -> problem::Motion {
+        let to_body = |v: [f64; 3]| self.frame.vector_to_body(v.into());
         match self.body.motion.value {
+            // The known flow takes the place of all that is imposed.
+            _ if self.case.test.is_some() => problem::Motion::Given(RigidMotion::rest()),
             Motion::Rigid {
                 velocity,
                 angular_velocity,
-            } if self.case.test.is_none() => (velocity, angular_velocity),
-            _ => ([0.0; 3], [0.0; 3]),
+            } => problem::Motion::Given(RigidMotion {
+                velocity: to_body(velocity),
+                angular_velocity: to_body(angular_velocity),
+            }),
+            Motion::Free { force, torque } => problem::Motion::Free(Wrench {
+                force: to_body(force) / self.case.viscosity,
+                torque: to_body(torque) / self.case.viscosity,
+            }),
         }
+    }
+
+    /// The slip of the body, in its own frame.
+    fn slip(&self) -> Option<Box<Velocity<'_>>> {
+        let slip = self.body.slip.as_ref()?;
+        Some(match &slip.value {
+            Slip::Squirmer { b } => Box::new(squirmer(b)),
+            &Slip::PoleToPole {
+                polar,
+                equatorial,
+                speed,
+            } => Box::new(pole_to_pole(polar, equatorial, speed)),
+        })
+    }
+
+    /// The undisturbed flow in the body's frame.
+    fn background(&self) -> LinearFlow {
+        let flow = match self.case.background.as_ref().map(|b| &b.value) {
+            None => LinearFlow::rest(),
+            Some(&Background::Uniform { velocity }) => LinearFlow::uniform(velocity.into()),
+            Some(&Background::Shear {
+                rate,
+                flow,
+                gradient,
+            }) => LinearFlow::shear(rate, flow.into(), gradient.into()),
+            Some(&Background::Linear { gradient }) => LinearFlow {
+                gradient: Matrix3::from_fn(|i, j| gradient[i][j]),
+                ..LinearFlow::rest()
+            },
+        };
+        self.frame.flow_to_body(&flow)
     }
 
     fn report(&self, answer: &Answer) -> Report {
         let viscosity = self.case.viscosity;
         let to_lab = |v: Vector3<f64>| self.frame.vector_to_lab(v).into();
-        let (velocity, angular_velocity) = self.imposed();
+        let velocities = [answer.motion.velocity, answer.motion.angular_velocity].map(to_lab);
+        let forces = [answer.wrench.force, answer.wrench.torque].map(|f| to_lab(viscosity * f));
+        // What is given comes back as it was.
+        let ([velocity, angular_velocity], [force, torque]) = match self.body.motion.value {
+            _ if self.case.test.is_some() => ([[0.0; 3]; 2], forces),
+            Motion::Rigid {
+                velocity,
+                angular_velocity,
+            } => ([velocity, angular_velocity], forces),
+            Motion::Free { force, torque } => (velocities, [force, torque]),
+        };
+        let stresslet = self.frame.tensor_to_lab(&answer.body_flow.stresslet());
         let probes = self
             .case
             .probes
@@ -319,8 +366,9 @@ impl<'a> Setting<'a> {
             bodies: vec![BodyReport {
                 velocity,
                 angular_velocity,
-                force: to_lab(viscosity * answer.wrench.force),
-                torque: to_lab(viscosity * answer.wrench.torque),
+                force,
+                torque,
+                stresslet: (viscosity * stresslet).transpose().into(),
             }],
             probes: probes.collect(),
             error_estimate: answer.error_estimate,

@@ -1,12 +1,13 @@
 //! The flow around a body as it was solved for: the undisturbed flow and what the body adds to it.
 
-use nalgebra::Point3;
+use nalgebra::{Matrix3, Point3};
 
 use super::discretization::Discretization;
 use super::flow::{Flow, FlowError};
 use super::layers::Layers;
 use super::linear_flow::LinearFlow;
 use super::rigid::{RigidMotion, Wrench};
+use super::stresslet::stresslet;
 use super::surface::SurfaceModes;
 use crate::kernel::{FlowAt, FlowGradientAt};
 
@@ -68,6 +69,11 @@ impl BodyFlow {
     /// double layer nor a linear flow exerts any.
     pub fn wrench(&self) -> Wrench {
         Wrench::of(&self.discretization, &self.layers.single)
+    }
+
+    /// The stresslet about the origin, of the disturbance; see [`stresslet`].
+    pub fn stresslet(&self) -> Matrix3<f64> {
+        stresslet(&self.discretization, &self.layers)
     }
 
     /// The velocity of the surface, rigid motion and slip.

@@ -98,6 +98,8 @@ pub use body::mobility::MobilitySolver;
 #[doc(inline)]
 pub use body::problem::{Answer, Motion, Problem, ProblemError, Resolution};
 #[doc(inline)]
+pub use body::resistance::{MobilityMatrix, ResistanceMatrix, RigidBodyMatrices, ScalarFunctions};
+#[doc(inline)]
 pub use body::rigid::{RigidMotion, Wrench};
 #[doc(inline)]
 pub use body::slip::{pole_to_pole, squirmer};

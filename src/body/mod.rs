@@ -16,6 +16,7 @@
 //! | [`linear_flow`] | undisturbed flows |
 //! | [`body_flow`] | the whole flow, as it was solved for |
 //! | [`problem`] | exterior problems, answered with an estimate of the error |
+//! | [`resistance`] | resistance and mobility matrices |
 //! | [`rigid`] | rigid motions, force and torque |
 //! | [`shell`] | the projection onto rigid motions |
 //! | [`slip`] | surface velocities of swimmers |
@@ -36,6 +37,7 @@ mod near;
 mod near_tests;
 pub mod problem;
 mod refinement;
+pub mod resistance;
 pub mod rigid;
 pub mod shell;
 pub mod slip;

@@ -4,6 +4,7 @@ mod bodies;
 mod faxen;
 mod jeffery;
 mod keller_wu;
+mod matrices;
 mod reciprocity;
 mod resistance;
 mod spheroids;

@@ -64,6 +64,7 @@
 //! | [`case`] | case files |
 //! | [`output`] | reports as tables and JSON, plots |
 //! | [`mod@solve`] | from a case to its report: frames and viscosity |
+//! | [`mod@resistance`] | from a case to the resistance of its shapes |
 //! | [`study`] | the convergence study |
 //! | [`progress`] | how a long computation tells where it is |
 //!
@@ -75,6 +76,7 @@ pub mod curve;
 pub mod kernel;
 pub mod output;
 pub mod progress;
+pub mod resistance;
 pub mod solve;
 pub mod special;
 pub mod study;

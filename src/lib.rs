@@ -9,14 +9,14 @@
 //! use axistokes::*;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let sphere = std::sync::Arc::new(Spheroid::sphere(1.0)?);
 //! let problem = Problem {
-//!     curve: std::sync::Arc::new(Spheroid::sphere(1.0)?),
-//!     velocity: BoundaryVelocity::Rigid(RigidMotion {
+//!     motion: Motion::Given(RigidMotion {
 //!         velocity: nalgebra::Vector3::z(),
 //!         angular_velocity: nalgebra::Vector3::zeros(),
 //!     }),
 //!     targets: &[nalgebra::Point3::new(0.0, 0.0, 2.0)],
-//!     formulation: Formulation::CombinedField,
+//!     ..Problem::new(sphere)
 //! };
 //! let answer = problem.to_tolerance(1e-10, &Silent)?;
 //! assert!(answer.error_estimate <= 1e-10);
@@ -64,6 +64,7 @@
 //! | [`case`] | case files |
 //! | [`output`] | reports as tables and JSON, plots |
 //! | [`mod@solve`] | from a case to its report: frames and viscosity |
+//! | [`mod@resistance`] | from a case to the resistance of its shapes |
 //! | [`study`] | the convergence study |
 //! | [`progress`] | how a long computation tells where it is |
 //!
@@ -75,12 +76,15 @@ pub mod curve;
 pub mod kernel;
 pub mod output;
 pub mod progress;
+pub mod resistance;
 pub mod solve;
 pub mod special;
 pub mod study;
 
 pub use nalgebra;
 
+#[doc(inline)]
+pub use body::body_flow::BodyFlow;
 #[doc(inline)]
 pub use body::dirichlet::{DirichletSolver, Formulation};
 #[doc(inline)]
@@ -90,9 +94,17 @@ pub use body::flow::{Flow, FlowError};
 #[doc(inline)]
 pub use body::frame::Frame;
 #[doc(inline)]
-pub use body::problem::{Answer, BoundaryVelocity, Problem, ProblemError, Resolution};
+pub use body::linear_flow::LinearFlow;
+#[doc(inline)]
+pub use body::mobility::MobilitySolver;
+#[doc(inline)]
+pub use body::problem::{Answer, Motion, Problem, ProblemError, Resolution};
+#[doc(inline)]
+pub use body::resistance::{MobilityMatrix, ResistanceMatrix, RigidBodyMatrices, ScalarFunctions};
 #[doc(inline)]
 pub use body::rigid::{RigidMotion, Wrench};
+#[doc(inline)]
+pub use body::slip::{pole_to_pole, squirmer};
 #[doc(inline)]
 pub use body::surface::SurfaceModes;
 #[doc(inline)]

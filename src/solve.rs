@@ -1,16 +1,20 @@
 //! From a case to its answer.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
-use nalgebra::{Point3, Unit, Vector3};
+use nalgebra::{Matrix3, Point3, Unit, Vector3};
 
+use crate::body::body_flow::BodyFlow;
 use crate::body::dirichlet;
 use crate::body::frame::Frame;
-use crate::body::problem::{Answer, BoundaryVelocity, Problem, ProblemError, Resolution};
-use crate::body::rigid::RigidMotion;
-use crate::case::{Accuracy, Body, Case, CaseError, Formulation, Motion};
+use crate::body::linear_flow::LinearFlow;
+use crate::body::problem::{self, Answer, Problem, ProblemError, Resolution, evaluation_tolerance};
+use crate::body::rigid::{RigidMotion, Wrench};
+use crate::body::slip::{pole_to_pole, squirmer};
+use crate::case::{Accuracy, Background, Body, Case, CaseError, Formulation, Motion, Slip};
 use crate::curve::{GeneratingCurve, Meridian, Outline, Panels};
-use crate::kernel::Stokeslet;
+use crate::kernel::{FlowAt, Stokeslet};
 use crate::output::{BodyReport, Discretization, KnownFlowReport, ProbeReport, Report, Timings};
 use crate::progress::Progress;
 
@@ -26,13 +30,124 @@ pub enum SolveError {
     Failed(String),
 }
 
+/// A case that was solved: its report, and the flow to look at more closely. Everything is in the laboratory's frame.
+#[derive(Clone, Debug)]
+pub struct Solved {
+    /// What the case asked for.
+    pub report: Report,
+    /// The bodies in the order of the case.
+    pub bodies: Vec<SolvedBody>,
+    /// Tolerance of the flow's quadrature.
+    tolerance: f64,
+}
+
+/// One body of a case that was solved.
+#[derive(Clone, Debug)]
+pub struct SolvedBody {
+    frame: Frame,
+    viscosity: f64,
+    flow: BodyFlow,
+}
+
+/// A point of a body's surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceSample {
+    /// The point.
+    pub point: Point3<f64>,
+    /// The outward unit normal.
+    pub normal: Vector3<f64>,
+    /// The velocity of the surface, and of the fluid there.
+    pub velocity: Vector3<f64>,
+}
+
+impl Solved {
+    /// Velocity and pressure of the whole flow at any points, `None` inside a body.
+    ///
+    /// # Errors
+    /// If a point is not finite, or too near to a surface for the tolerance of the case.
+    pub fn flow_at(&self, points: &[Point3<f64>]) -> Result<Vec<Option<FlowAt>>, SolveError> {
+        let failed = |error: &dyn std::fmt::Display| SolveError::Failed(error.to_string());
+        let mut flow = vec![None; points.len()];
+        for body in &self.bodies {
+            let curve = body.flow.discretization.curve();
+            let outline = Outline::new(&**curve).map_err(|error| failed(&error))?;
+            let (mut targets, mut places) = (Vec::new(), Vec::new());
+            for (place, &point) in points.iter().enumerate() {
+                let target = body.frame.point_to_body(point);
+                if !outline.contains(meridian(target)) {
+                    targets.push(target);
+                    places.push(place);
+                }
+            }
+            let found = body.flow.at(&targets, self.tolerance);
+            for (place, at) in places
+                .into_iter()
+                .zip(found.map_err(|error| failed(&error))?)
+            {
+                flow[place] = Some(FlowAt {
+                    velocity: body.frame.vector_to_lab(at.velocity),
+                    pressure: body.viscosity * at.pressure,
+                });
+            }
+        }
+        Ok(flow)
+    }
+}
+
+impl SolvedBody {
+    /// Where the body is.
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// The flow in the body's own frame and for viscosity 1, with panels and nodes of its generating curve.
+    pub fn flow(&self) -> &BodyFlow {
+        &self.flow
+    }
+
+    /// The surface at the nodes of the generating curve, each turned to `azimuths` equal steps about the axis: node after node, the
+    /// azimuths of a node one after the other.
+    pub fn surface(&self, azimuths: usize) -> Vec<SurfaceSample> {
+        let velocity = self.flow.surface_velocity();
+        let nodes = self.flow.discretization.nodes().iter().enumerate();
+        let samples = nodes.flat_map(|(k, node)| {
+            let velocity = &velocity;
+            (0..azimuths).map(move |l| {
+                let theta = 2.0 * PI * l as f64 / azimuths as f64;
+                let turned = |[r, t, z]: [f64; 3]| {
+                    let (sin, cos) = theta.sin_cos();
+                    Vector3::new(r * cos - t * sin, r * sin + t * cos, z)
+                };
+                SurfaceSample {
+                    point: self
+                        .frame
+                        .point_to_lab(turned([node.r, 0.0, node.z]).into()),
+                    normal: self
+                        .frame
+                        .vector_to_lab(turned([node.normal[0], 0.0, node.normal[1]])),
+                    velocity: self.frame.vector_to_lab(turned(velocity.at(k, theta))),
+                }
+            })
+        });
+        samples.collect()
+    }
+}
+
+/// Where a point lies in the half plane.
+fn meridian(x: Point3<f64>) -> Meridian {
+    Meridian {
+        r: x.x.hypot(x.y),
+        z: x.z,
+    }
+}
+
 /// Solves a case once.
 ///
 /// The report is returned even when its error estimate exceeds the tolerance: the caller compares.
 ///
 /// # Errors
 /// [`SolveError::Case`] if the case asks for the impossible or for what is not built.
-pub fn solve(case: &Case, progress: &dyn Progress) -> Result<Report, SolveError> {
+pub fn solve(case: &Case, progress: &dyn Progress) -> Result<Solved, SolveError> {
     case.check_supported()?;
     let [body] = &case.bodies[..] else {
         return Err(case.error(0, "expected one body").into());
@@ -45,19 +160,20 @@ pub fn solve(case: &Case, progress: &dyn Progress) -> Result<Report, SolveError>
         .collect();
     let known = setting.known_flow()?;
     let field = |x: Vector3<f64>| known.iter().map(|s| s.velocity(x)).sum::<Vector3<f64>>();
-    let velocity = if case.test.is_some() {
-        BoundaryVelocity::Field(&field)
-    } else {
-        BoundaryVelocity::Rigid(setting.motion())
-    };
+    let slip = setting.slip();
     let problem = Problem {
-        curve: setting.curve.clone(),
-        velocity,
+        motion: setting.motion(),
+        slip: match (&case.test, &slip) {
+            (Some(_), _) => Some(&field),
+            (None, slip) => slip.as_deref(),
+        },
+        background: setting.background(),
         targets: &targets,
         formulation: match case.solver.formulation {
             Formulation::SingleLayer => dirichlet::Formulation::SingleLayer,
             _ => dirichlet::Formulation::CombinedField,
         },
+        ..Problem::new(setting.curve.clone())
     };
     let answer = match case.accuracy {
         Accuracy::Tolerance(tolerance) => problem.to_tolerance(tolerance, progress),
@@ -96,8 +212,19 @@ pub fn solve(case: &Case, progress: &dyn Progress) -> Result<Report, SolveError>
             },
         });
     }
-    Ok(report)
+    Ok(Solved {
+        report,
+        bodies: vec![SolvedBody {
+            frame: setting.frame,
+            viscosity: case.viscosity,
+            flow: answer.body_flow,
+        }],
+        tolerance: evaluation_tolerance(case.tolerance()),
+    })
 }
+
+/// A velocity as a function of the point.
+type Velocity<'a> = dyn Fn(Vector3<f64>) -> Vector3<f64> + Sync + 'a;
 
 /// A case's one body, ready to be computed with.
 struct Setting<'a> {
@@ -117,13 +244,8 @@ impl<'a> Setting<'a> {
         let curve = shape.value.curve().map_err(|error| at_shape(&error))?;
         let frame = Frame::new(body.center.into(), Unit::new_normalize(body.axis.into()));
         let outline = Outline::new(&*curve).map_err(|error| at_shape(&error))?;
-        let inside = |point: [f64; 3]| {
-            let x = frame.point_to_body(point.into());
-            outline.contains(Meridian {
-                r: x.x.hypot(x.y),
-                z: x.z,
-            })
-        };
+        let inside =
+            |point: [f64; 3]| outline.contains(meridian(frame.point_to_body(point.into())));
         for probe in &case.probes {
             if inside(probe.value) {
                 let message = format!(
@@ -162,29 +284,72 @@ impl<'a> Setting<'a> {
             .collect())
     }
 
-    /// The body's motion in its own frame.
-    fn motion(&self) -> RigidMotion {
-        let (velocity, angular_velocity) = self.imposed();
-        RigidMotion {
-            velocity: self.frame.vector_to_body(velocity.into()),
-            angular_velocity: self.frame.vector_to_body(angular_velocity.into()),
-        }
-    }
-
-    fn imposed(&self) -> ([f64; 3], [f64; 3]) {
+    /// What is imposed on the body, in its own frame and at viscosity 1.
+    fn motion(&self) -> problem::Motion {
+        let to_body = |v: [f64; 3]| self.frame.vector_to_body(v.into());
         match self.body.motion.value {
+            // The known flow takes the place of all that is imposed.
+            _ if self.case.test.is_some() => problem::Motion::Given(RigidMotion::rest()),
             Motion::Rigid {
                 velocity,
                 angular_velocity,
-            } if self.case.test.is_none() => (velocity, angular_velocity),
-            _ => ([0.0; 3], [0.0; 3]),
+            } => problem::Motion::Given(RigidMotion {
+                velocity: to_body(velocity),
+                angular_velocity: to_body(angular_velocity),
+            }),
+            Motion::Free { force, torque } => problem::Motion::Free(Wrench {
+                force: to_body(force) / self.case.viscosity,
+                torque: to_body(torque) / self.case.viscosity,
+            }),
         }
+    }
+
+    /// The slip of the body, in its own frame.
+    fn slip(&self) -> Option<Box<Velocity<'_>>> {
+        let slip = self.body.slip.as_ref()?;
+        Some(match &slip.value {
+            Slip::Squirmer { b } => Box::new(squirmer(b)),
+            &Slip::PoleToPole {
+                polar,
+                equatorial,
+                speed,
+            } => Box::new(pole_to_pole(polar, equatorial, speed)),
+        })
+    }
+
+    /// The undisturbed flow in the body's frame.
+    fn background(&self) -> LinearFlow {
+        let flow = match self.case.background.as_ref().map(|b| &b.value) {
+            None => LinearFlow::rest(),
+            Some(&Background::Uniform { velocity }) => LinearFlow::uniform(velocity.into()),
+            Some(&Background::Shear {
+                rate,
+                flow,
+                gradient,
+            }) => LinearFlow::shear(rate, flow.into(), gradient.into()),
+            Some(&Background::Linear { gradient }) => LinearFlow {
+                gradient: Matrix3::from_fn(|i, j| gradient[i][j]),
+                ..LinearFlow::rest()
+            },
+        };
+        self.frame.flow_to_body(&flow)
     }
 
     fn report(&self, answer: &Answer) -> Report {
         let viscosity = self.case.viscosity;
         let to_lab = |v: Vector3<f64>| self.frame.vector_to_lab(v).into();
-        let (velocity, angular_velocity) = self.imposed();
+        let velocities = [answer.motion.velocity, answer.motion.angular_velocity].map(to_lab);
+        let forces = [answer.wrench.force, answer.wrench.torque].map(|f| to_lab(viscosity * f));
+        // What is given comes back as it was.
+        let ([velocity, angular_velocity], [force, torque]) = match self.body.motion.value {
+            _ if self.case.test.is_some() => ([[0.0; 3]; 2], forces),
+            Motion::Rigid {
+                velocity,
+                angular_velocity,
+            } => ([velocity, angular_velocity], forces),
+            Motion::Free { force, torque } => (velocities, [force, torque]),
+        };
+        let stresslet = self.frame.tensor_to_lab(&answer.body_flow.stresslet());
         let probes = self
             .case
             .probes
@@ -200,8 +365,9 @@ impl<'a> Setting<'a> {
             bodies: vec![BodyReport {
                 velocity,
                 angular_velocity,
-                force: to_lab(viscosity * answer.wrench.force),
-                torque: to_lab(viscosity * answer.wrench.torque),
+                force,
+                torque,
+                stresslet: (viscosity * stresslet).transpose().into(),
             }],
             probes: probes.collect(),
             error_estimate: answer.error_estimate,

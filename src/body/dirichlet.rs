@@ -12,14 +12,14 @@
 use panel_quadrature::QuadratureError;
 
 use super::discretization::Discretization;
-use super::factors::ModalFactors;
+use super::factors::{ModalFactors, Seconds};
 use super::flow::{Flow, Side};
 use super::layers::{LayerWeights, Layers};
 use super::matrix::ModalMatrices;
 use super::rigid::{RigidMotion, Wrench};
 use super::surface::SurfaceModes;
 use crate::kernel::{CombinedField, DoubleLayer, SingleLayer};
-use crate::progress::{Progress, Silent};
+use crate::progress::Progress;
 use crate::special::toroidal;
 
 /// The equation that is solved.
@@ -58,7 +58,7 @@ impl Formulation {
             self,
             self.weights(discretization),
             n_max,
-            &Silent,
+            &|| (),
         )
     }
 }
@@ -73,15 +73,6 @@ pub struct DirichletSolver {
     seconds: Seconds,
 }
 
-/// Wall-clock time of the stages.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Seconds {
-    /// Assembling the matrices.
-    pub assemble: f64,
-    /// Factoring them.
-    pub factor: f64,
-}
-
 impl DirichletSolver {
     /// Assembles and factors the equation for modes up to `n_max`.
     ///
@@ -94,17 +85,9 @@ impl DirichletSolver {
         progress: &dyn Progress,
     ) -> Result<Self, QuadratureError> {
         let weights = formulation.weights(&discretization);
-        let start = std::time::Instant::now();
-        progress.begin("assembling", discretization.nodes().len());
-        let matrices = assemble(&discretization, formulation, weights, n_max, progress)?;
-        let assemble = start.elapsed().as_secs_f64();
-        let start = std::time::Instant::now();
-        progress.begin("factoring", matrices.modes());
-        let factors = ModalFactors::new(matrices, &discretization, &|| progress.advance(1));
-        let seconds = Seconds {
-            assemble,
-            factor: start.elapsed().as_secs_f64(),
-        };
+        let (factors, seconds) = ModalFactors::assembled(&discretization, progress, |done| {
+            assemble(&discretization, formulation, weights, n_max, done)
+        })?;
         Ok(Self {
             discretization,
             formulation,
@@ -126,7 +109,7 @@ impl DirichletSolver {
 
     /// Unknowns of all modes: three components at each node for two families, one for mode 0.
     pub fn unknowns(&self) -> usize {
-        3 * self.discretization.nodes().len() * (2 * self.modes() - 1)
+        self.factors.unknowns()
     }
 
     /// The equation.
@@ -181,9 +164,8 @@ fn assemble(
     formulation: Formulation,
     weights: LayerWeights,
     n_max: usize,
-    progress: &dyn Progress,
+    done: &(dyn Fn() + Sync),
 ) -> Result<ModalMatrices, QuadratureError> {
-    let done = || progress.advance(1);
     let mut matrices = match formulation {
         Formulation::CombinedField => ModalMatrices::assemble(
             discretization,
@@ -192,17 +174,19 @@ fn assemble(
             },
             0.5,
             n_max,
-            &done,
+            done,
         )?,
         Formulation::SingleLayer => {
-            ModalMatrices::assemble(discretization, &SingleLayer, 0.0, n_max, &done)?
+            ModalMatrices::assemble(discretization, &SingleLayer, 0.0, n_max, done)?
         }
         Formulation::InteriorDoubleLayer => {
-            ModalMatrices::assemble(discretization, &DoubleLayer, -0.5, n_max, &done)?
+            ModalMatrices::assemble(discretization, &DoubleLayer, -0.5, n_max, done)?
         }
     };
     if formulation != Formulation::CombinedField {
-        matrices.add_normal_projection(discretization);
+        matrices.add_projection(discretization, 0, |node| {
+            [node.normal[0], 0.0, node.normal[1]]
+        });
     }
     Ok(matrices)
 }

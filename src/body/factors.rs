@@ -1,15 +1,19 @@
 //! Factors of the modal matrices: they belong to the shape, and serve every body of that shape and every right-hand side.
 
+use std::time::Instant;
+
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::{factor, solve};
 use faer::perm::PermRef;
 use faer::{MatMut, MatRef, Par};
+use panel_quadrature::QuadratureError;
 use rayon::prelude::*;
 
 use super::discretization::Discretization;
 use super::matrix::ModalMatrices;
 use super::storage::Storage;
 use super::surface::SurfaceModes;
+use crate::progress::Progress;
 
 /// LU factors of every mode's matrix.
 #[derive(Debug)]
@@ -21,6 +25,15 @@ pub struct ModalFactors {
     unknowns: usize,
     /// Square roots of the quadrature weights, node after node.
     root_weights: Vec<f64>,
+}
+
+/// Wall-clock time of the stages.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Seconds {
+    /// Assembling the matrices.
+    pub assemble: f64,
+    /// Factoring them.
+    pub factor: f64,
 }
 
 /// A permutation and its inverse.
@@ -62,6 +75,27 @@ fn solve_transpose(packed: &[f64], permutation: &Permutation, columns: MatMut<'_
 }
 
 impl ModalFactors {
+    /// Assembles and factors matrices; `assemble` is given what to call after each target node.
+    ///
+    /// # Errors
+    /// Those of `assemble`.
+    pub(crate) fn assembled(
+        discretization: &Discretization,
+        progress: &dyn Progress,
+        assemble: impl FnOnce(&(dyn Fn() + Sync)) -> Result<ModalMatrices, QuadratureError>,
+    ) -> Result<(Self, Seconds), QuadratureError> {
+        let done = || progress.advance(1);
+        let start = Instant::now();
+        progress.begin("assembling", discretization.nodes().len());
+        let matrices = assemble(&done)?;
+        let assemble = start.elapsed().as_secs_f64();
+        let start = Instant::now();
+        progress.begin("factoring", matrices.modes());
+        let factors = Self::new(matrices, discretization, &done);
+        let factor = start.elapsed().as_secs_f64();
+        Ok((factors, Seconds { assemble, factor }))
+    }
+
     /// Factors the matrices, one mode per task; `done` is called after each.
     pub(crate) fn new(
         matrices: ModalMatrices,
@@ -92,6 +126,11 @@ impl ModalFactors {
     /// Modes, counting the zeroth.
     pub fn count(&self) -> usize {
         self.permutations.len()
+    }
+
+    /// Unknowns of all modes: those of each mode's matrix for two families, one for mode 0.
+    pub fn unknowns(&self) -> usize {
+        self.unknowns * (2 * self.count() - 1)
     }
 
     /// The density whose potential has the boundary values `data`; modes of `data` beyond the factors' are left out.

@@ -1,6 +1,8 @@
 //! The body's frame and the laboratory's.
 
-use nalgebra::{Point3, Rotation3, Unit, Vector3};
+use nalgebra::{Matrix3, Point3, Rotation3, Unit, Vector3};
+
+use super::linear_flow::LinearFlow;
 
 /// Where a body is: its centre and the direction of its symmetry axis, in the laboratory.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,9 +31,29 @@ impl Frame {
             .into()
     }
 
+    /// A point of the body's frame, in the laboratory.
+    pub fn point_to_lab(&self, point: Point3<f64>) -> Point3<f64> {
+        self.center + self.rotation * point.coords
+    }
+
     /// A vector of the laboratory, in the body's frame.
     pub fn vector_to_body(&self, vector: Vector3<f64>) -> Vector3<f64> {
         self.rotation.inverse_transform_vector(&vector)
+    }
+
+    /// A flow of the laboratory, in the body's frame.
+    pub fn flow_to_body(&self, flow: &LinearFlow) -> LinearFlow {
+        let rotation = self.rotation.matrix();
+        LinearFlow {
+            velocity: self.vector_to_body(flow.at(self.center.coords)),
+            gradient: rotation.transpose() * flow.gradient * rotation,
+        }
+    }
+
+    /// A tensor of second rank of the body's frame, in the laboratory.
+    pub fn tensor_to_lab(&self, tensor: &Matrix3<f64>) -> Matrix3<f64> {
+        let rotation = self.rotation.matrix();
+        rotation * tensor * rotation.transpose()
     }
 
     /// A vector of the body's frame, in the laboratory.
@@ -57,6 +79,14 @@ mod tests {
             assert!((frame.vector_to_lab(Vector3::z()) - *axis).norm() < 1e-15);
             let x = Vector3::new(0.3, -0.4, 0.5);
             assert!((frame.vector_to_body(frame.vector_to_lab(x)) - x).norm() < 1e-15);
+            let shear = LinearFlow::shear(2.0, Vector3::x(), Vector3::z());
+            let in_body = frame.flow_to_body(&shear);
+            let velocity = frame.vector_to_lab(in_body.at(frame.point_to_body(x.into()).coords));
+            assert!((velocity - shear.at(x)).norm() < 1e-14);
+            let strain = frame.tensor_to_lab(&in_body.strain_rate());
+            assert!((strain - shear.strain_rate()).norm() < 1e-14);
+            let point = Point3::from(x);
+            assert!((frame.point_to_body(frame.point_to_lab(point)) - point).norm() < 1e-14);
             let on_axis = frame.point_to_body(frame.center + *axis * 2.0);
             assert!((on_axis.coords - Vector3::new(0.0, 0.0, 2.0)).norm() < 1e-14);
         }

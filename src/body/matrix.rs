@@ -159,23 +159,27 @@ impl ModalMatrices {
         values
     }
 
-    /// Adds $\nu\langle\nu,\cdot\rangle$, the normal times the mean normal component: a matrix of rank one, in mode 0.
-    pub(crate) fn add_normal_projection(&mut self, discretization: &Discretization) {
+    /// Adds to mode `n` the orthogonal projection, in $L^2$ of the surface, onto a field of that mode: a matrix of rank one. `field`
+    /// gives the field's components (radial, azimuthal, axial) at a node.
+    pub(crate) fn add_projection(
+        &mut self,
+        discretization: &Discretization,
+        n: usize,
+        field: impl Fn(&Node) -> [f64; 3],
+    ) {
         let nodes = discretization.nodes();
-        let area: f64 = nodes.iter().map(|node| node.weight).sum();
-        let normal = |component: usize, node: &Node| match component {
-            0 => node.normal[0] * node.weight.sqrt(),
-            2 => node.normal[1] * node.weight.sqrt(),
-            _ => 0.0,
-        };
-        for i in 0..self.unknowns {
-            let first = i * self.unknowns;
-            let left = normal(i / nodes.len(), &nodes[i % nodes.len()]);
-            for (j, entry) in self.rows.as_mut_slice()[first..][..self.unknowns]
-                .iter_mut()
-                .enumerate()
-            {
-                *entry += left * normal(j / nodes.len(), &nodes[j % nodes.len()]) / area;
+        let mut vector = vec![0.0; self.unknowns];
+        for (k, node) in nodes.iter().enumerate() {
+            for (j, component) in field(node).into_iter().enumerate() {
+                vector[j * nodes.len() + k] = component * node.weight.sqrt();
+            }
+        }
+        let norm_squared: f64 = vector.iter().map(|x| x * x).sum();
+        let size = self.unknowns * self.unknowns;
+        let rows = self.rows.as_mut_slice()[n * size..][..size].chunks_mut(self.unknowns);
+        for (row, left) in rows.zip(&vector) {
+            for (entry, right) in row.iter_mut().zip(&vector) {
+                *entry += left * right / norm_squared;
             }
         }
     }

@@ -1,45 +1,58 @@
-//! Exterior Dirichlet problems on one body, answered with an estimate of the error.
+//! Exterior problems on one body, answered with an estimate of the error.
 //!
-//! Every answer is computed twice: on the discretization asked for, and on one that has the same panels with more nodes on each,
-//! more modes, and other quadrature for the near interactions. The difference between the two is the error of the coarser, which is
-//! the one reported; where the coarser is not good enough the panels that resolve the density worst are bisected.
+//! On the surface the velocity is $U + \Omega \times x + u_s$, in a fluid that would flow with $u_\infty$ were the body not there. The rigid
+//! motion is given or, for a free body, found from force and torque; the slip $u_s$ is any function.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
 use std::time::Instant;
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Matrix3, Point3, Vector3};
 use panel_quadrature::QuadratureError;
 
-use super::dirichlet::{DirichletSolver, Formulation, Seconds};
+use super::body_flow::BodyFlow;
+use super::dirichlet::{DirichletSolver, Formulation};
 use super::discretization::Discretization;
+use super::factors::Seconds;
 use super::flow::FlowError;
+use super::layers::Layers;
+use super::linear_flow::{self, LinearFlow};
+use super::mobility::MobilitySolver;
+use super::refinement::{
+    EXTRA_ORDER, ORDER, Round, error_estimate, first_panels, refine, unresolved_panels,
+};
 use super::rigid::{RigidMotion, Wrench};
 use super::surface::SurfaceModes;
 use crate::curve::{CurveError, GeneratingCurve, Panels};
 use crate::kernel::FlowAt;
 use crate::progress::Progress;
 
-/// The velocity imposed on the surface, in the body's frame.
-#[derive(Clone, Copy)]
-#[non_exhaustive]
-pub enum BoundaryVelocity<'a> {
-    /// A rigid motion.
-    Rigid(RigidMotion),
-    /// Any velocity, as a function of the point on the surface.
-    Field(&'a (dyn Fn(Vector3<f64>) -> Vector3<f64> + Sync)),
+/// What is known of a body's rigid motion, in its own frame and about its origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Motion {
+    /// The motion itself.
+    Given(RigidMotion),
+    /// The force and torque exerted on the body from outside, which it hands on to the fluid.
+    Free(Wrench),
 }
+
+/// A velocity of the surface, as a function of the point on it, in the body's frame.
+pub type Slip<'a> = &'a (dyn Fn(Vector3<f64>) -> Vector3<f64> + Sync);
 
 /// A question about one body, in its own frame and for viscosity 1.
 #[derive(Clone)]
 pub struct Problem<'a> {
     /// The generating curve.
     pub curve: Arc<dyn GeneratingCurve>,
-    /// What the surface does.
-    pub velocity: BoundaryVelocity<'a>,
+    /// How the body moves, or what moves it.
+    pub motion: Motion,
+    /// The velocity of the surface relative to the rigid motion, if there is any: what a swimmer does, or any boundary values.
+    pub slip: Option<Slip<'a>>,
+    /// The undisturbed flow.
+    pub background: LinearFlow,
     /// Points outside the body where the flow is wanted.
     pub targets: &'a [Point3<f64>],
-    /// The equation; an exterior one.
+    /// The equation for a given motion; an exterior one. A free body always has that of [`mobility`](super::mobility).
     pub formulation: Formulation,
 }
 
@@ -57,18 +70,27 @@ pub struct Resolution {
 /// The answer to a [`Problem`].
 #[derive(Clone, Debug)]
 pub struct Answer {
+    /// The rigid motion about the origin: the one given, or the one found.
+    pub motion: RigidMotion,
     /// Force and torque about the origin that the body exerts on the fluid.
     pub wrench: Wrench,
-    /// Velocity and pressure at the targets.
+    /// Velocity and pressure at the targets, background included.
     pub flow: Vec<FlowAt>,
-    /// Estimated error: of the velocities relative to the largest speed imposed, and of force and torque relative to the larger
-    /// of the two (a force times the body's size counting as torque).
+    /// Everything that the flow is made of.
+    pub body_flow: BodyFlow,
+    /// Estimated error: of the velocities at the targets relative to [`largest_speed`](Self::largest_speed), and of what was found of
+    /// force and torque or of the rigid motion relative to the larger of the two (a force times the body's size, half its largest
+    /// extent, counting as torque, an angular velocity times that as velocity).
+    ///
+    /// Forces and rigid velocities may vanish by symmetry: below a hundredth of $6\pi$ times size and largest speed, and below a
+    /// hundredth of the largest speed, they count relative to that.
     pub error_estimate: f64,
     /// The resolution it was computed with.
     pub resolution: Resolution,
     /// Unknowns of all modes.
     pub unknowns: usize,
-    /// The largest speed imposed.
+    /// The largest speed on the surface, of what is imposed (rigid motion and slip together, or the background) and of a free body's
+    /// motion.
     pub largest_speed: f64,
     /// How long things took.
     pub timings: Timings,
@@ -121,27 +143,29 @@ pub enum ProblemError {
     Velocity,
 }
 
-/// Nodes per panel where the solver chooses.
-const ORDER: usize = 16;
-/// Nodes per panel that the checking discretization has beyond the checked one's.
-const EXTRA_ORDER: usize = 4;
-/// How far the estimate stays above the difference: the checking solution has an error too.
-const SAFETY: f64 = 2.0;
-/// What rounding leaves even where the difference happens to vanish.
-const ROUNDING: f64 = 4e-15;
 /// Largest number of modes the solver chooses.
 const MOST_MODES: usize = 400;
 /// Most entries of all matrices that the solver chooses by itself: 8 GB.
 const MOST_ENTRIES: f64 = 1e9;
-/// Panels are bisected that miss this fraction of what the worst does.
-const MARKED: f64 = 0.02;
-/// Rounds of refinement.
-const ROUNDS: usize = 24;
+/// Forces and rigid velocities below this part of what the largest speed would make them count as if they were that large.
+const SMALL: f64 = 1e-2;
+/// Tolerance of the flow's quadrature where the best is wanted.
+const EVALUATION: f64 = 1e-15;
+
+/// Tolerance of the flow's quadrature for an answer to a tolerance, or the best there is.
+pub(crate) fn evaluation_tolerance(tolerance: Option<f64>) -> f64 {
+    (1e-3 * tolerance.unwrap_or(0.0)).max(EVALUATION)
+}
 
 /// Entries of all the matrices that are in memory at once for a resolution: those of the solution it is checked with.
 pub(crate) fn matrix_entries(panels: usize, order: usize, modes: usize) -> f64 {
+    entries_of_check(panels, order, checking_modes(modes) + 1)
+}
+
+/// The same for a number of matrices of the check.
+fn entries_of_check(panels: usize, order: usize, matrices: usize) -> f64 {
     let unknowns = (3 * panels * (order + EXTRA_ORDER)) as f64;
-    unknowns * unknowns * (checking_modes(modes) + 1) as f64
+    unknowns * unknowns * matrices as f64
 }
 
 /// Modes of the solution that checks one of so many.
@@ -153,18 +177,29 @@ fn checking_modes(modes: usize) -> usize {
 ///
 /// The factors are not kept: two solutions are alive at a time, and the factors are most of what they would hold.
 struct Solution {
-    discretization: Discretization,
-    unknowns: usize,
-    seconds: Seconds,
-    density: SurfaceModes,
+    body_flow: BodyFlow,
     wrench: Wrench,
     flow: Vec<FlowAt>,
     largest_speed: f64,
+    unknowns: usize,
+    seconds: Seconds,
     solve: f64,
     evaluate: f64,
 }
 
-impl Problem<'_> {
+impl<'a> Problem<'a> {
+    /// A body held still in a fluid at rest: nothing happens until fields are changed, `Problem { motion, ..Problem::new(curve) }`.
+    pub fn new(curve: Arc<dyn GeneratingCurve>) -> Self {
+        Self {
+            curve,
+            motion: Motion::Given(RigidMotion::rest()),
+            slip: None,
+            background: LinearFlow::rest(),
+            targets: &[],
+            formulation: Formulation::CombinedField,
+        }
+    }
+
     /// The answer at a given resolution.
     ///
     /// # Errors
@@ -174,11 +209,7 @@ impl Problem<'_> {
         resolution: Resolution,
         progress: &dyn Progress,
     ) -> Result<Answer, ProblemError> {
-        let solution = self.solve(&resolution, EVALUATION, progress)?;
-        let start = Instant::now();
-        let check = self.check(&resolution, EVALUATION, progress)?;
-        let error = solution.error(&check);
-        Ok(solution.answer(resolution, error, start.elapsed().as_secs_f64()))
+        Ok(self.checked(resolution, EVALUATION, progress)?.answer)
     }
 
     /// The answer to a tolerance: the first resolution found whose error estimate is below it, or the best there is; compare
@@ -192,73 +223,68 @@ impl Problem<'_> {
         progress: &dyn Progress,
     ) -> Result<Answer, ProblemError> {
         let begin = Instant::now();
-        let evaluation = (1e-3 * tolerance).max(EVALUATION);
-        let first = Panels::resolving(&*self.curve, ORDER, tolerance.sqrt().clamp(1e-7, 1e-2))?
-            .graded_across_joints(&*self.curve);
-        let mut resolution = Resolution {
-            panels: first,
-            order: ORDER,
-            modes: 1,
-        };
-        resolution.modes = self.modes_for(&resolution, tolerance)?;
-        let entries = self.entries(resolution.panels.len(), resolution.modes);
+        let evaluation = evaluation_tolerance(Some(tolerance));
+        let first = first_panels(&*self.curve, tolerance)?;
+        let modes = self.modes_for(&first, tolerance)?;
+        let entries = self.entries(first.len(), modes);
         if entries > MOST_ENTRIES {
             return Err(ProblemError::Large {
                 tolerance,
-                panels: resolution.panels.len(),
-                modes: resolution.modes,
+                panels: first.len(),
+                modes,
                 gigabytes: 8e-9 * entries,
             });
         }
-        let mut best: Option<Answer> = None;
-        let mut rounds_without_gain = 0;
-        for _ in 0..ROUNDS {
-            let solution = self.solve(&resolution, evaluation, progress)?;
-            let check = self.check(&resolution, evaluation, progress)?;
-            let error = solution.error(&check);
-            let marked = solution.unresolved_panels()?;
-            let spent = begin.elapsed().as_secs_f64();
-            let own = solution.seconds();
-            let answer = solution.answer(resolution.clone(), error, spent - own);
-            let gain = best
-                .as_ref()
-                .is_none_or(|best| error < 0.5 * best.error_estimate);
-            rounds_without_gain = if gain { 0 } else { rounds_without_gain + 1 };
-            if best.as_ref().is_none_or(|best| error < best.error_estimate) {
-                best = Some(answer);
-            }
-            if error <= tolerance || rounds_without_gain > 2 {
-                break;
-            }
-            let panels = resolution
-                .panels
-                .bisected(|panel| marked[panel])
-                .graded_across_joints(&*self.curve);
-            if self.entries(panels.len(), resolution.modes) > MOST_ENTRIES {
-                break;
-            }
-            resolution.panels = panels;
-        }
-        best.ok_or(ProblemError::Velocity)
+        let affordable = |panels: usize| self.entries(panels, modes) <= MOST_ENTRIES;
+        let best = refine(&*self.curve, first, tolerance, affordable, |panels| {
+            let resolution = Resolution {
+                panels,
+                order: ORDER,
+                modes,
+            };
+            self.checked(resolution, evaluation, progress)
+        })?;
+        let mut answer = best.answer;
+        let spent = begin.elapsed().as_secs_f64();
+        answer.timings.estimate = spent - answer.timings.own();
+        Ok(answer)
     }
 
-    /// Matrix entries for so many panels and modes where the solver chooses.
-    fn entries(&self, panels: usize, modes: usize) -> f64 {
-        match self.velocity {
-            // Nothing but modes 0 and 1, in the check too.
-            BoundaryVelocity::Rigid(_) => {
-                2.0 * (3.0 * (panels * (ORDER + EXTRA_ORDER)) as f64).powi(2)
-            }
-            BoundaryVelocity::Field(_) => matrix_entries(panels, ORDER, modes),
-        }
-    }
-
-    fn discretization(&self, resolution: &Resolution) -> Result<Discretization, QuadratureError> {
-        Discretization::new(
-            self.curve.clone(),
-            resolution.panels.clone(),
-            resolution.order,
-        )
+    /// The solution at a resolution with its estimated error.
+    fn checked(
+        &self,
+        resolution: Resolution,
+        evaluation: f64,
+        progress: &dyn Progress,
+    ) -> Result<Round<Answer>, ProblemError> {
+        let solution = self.solve(&resolution, evaluation, progress)?;
+        let start = Instant::now();
+        let finer = Resolution {
+            order: resolution.order + EXTRA_ORDER,
+            modes: self.modes_of_check(resolution.modes),
+            panels: resolution.panels.clone(),
+        };
+        let check = self.solve(&finer, evaluation, progress)?;
+        let difference = solution.difference(&check);
+        drop(check);
+        let BodyFlow {
+            discretization,
+            layers,
+            ..
+        } = &solution.body_flow;
+        let error_estimate = error_estimate(discretization, difference);
+        // A free body's single layer is a rigid motion: there is nothing to resolve.
+        let density = match self.formulation {
+            Formulation::SingleLayer => &layers.single,
+            _ => &layers.double,
+        };
+        let unresolved = unresolved_panels(discretization, &[density])?;
+        Ok(Round {
+            panels: resolution.panels.clone(),
+            unresolved,
+            error_estimate,
+            answer: solution.answer(resolution, error_estimate, start.elapsed().as_secs_f64()),
+        })
     }
 
     fn solve(
@@ -267,89 +293,139 @@ impl Problem<'_> {
         evaluation: f64,
         progress: &dyn Progress,
     ) -> Result<Solution, ProblemError> {
-        let discretization = self.discretization(resolution)?;
-        let (data, largest_speed) = self.data(&discretization, resolution.modes);
-        if !largest_speed.is_finite() {
+        let discretization = self.discretization(&resolution.panels, resolution.order)?;
+        let background = self.background.on(&discretization);
+        let (slip, fastest) = self.slip_and_speed(&discretization, resolution.modes);
+        let imposed = fastest.max(background.largest);
+        if !imposed.is_finite() {
             return Err(ProblemError::Velocity);
         }
-        let solver =
-            DirichletSolver::new(discretization, self.formulation, resolution.modes, progress)?;
-        let start = Instant::now();
-        let density = solver.solve(&data);
-        let wrench = solver.wrench(&density);
-        let solve = start.elapsed().as_secs_f64();
+        let data = slip.clone().plus(-1.0, &background.modes);
+        let Disturbance {
+            motion,
+            wrench,
+            layers,
+            unknowns,
+            seconds,
+            solve,
+        } = match self.motion {
+            Motion::Given(motion) => {
+                self.of_given_motion(motion, &discretization, data, resolution.modes, progress)
+            }
+            Motion::Free(wrench) => free(wrench, &discretization, data, resolution.modes, progress),
+        }?;
+        let largest_speed = match self.motion {
+            Motion::Given(_) => imposed,
+            Motion::Free(_) => imposed.max(largest_speed(&motion, &discretization)),
+        };
         let start = Instant::now();
         progress.begin("evaluating", 0);
-        let flow = solver.flow(&density).at(self.targets, evaluation)?;
-        let evaluate = start.elapsed().as_secs_f64();
+        let body_flow = BodyFlow {
+            discretization,
+            layers,
+            background: self.background,
+            motion,
+            slip,
+        };
+        let flow = body_flow.at(self.targets, evaluation)?;
         Ok(Solution {
-            discretization: solver.discretization().clone(),
-            unknowns: solver.unknowns(),
-            seconds: solver.seconds(),
-            density,
+            body_flow,
             wrench,
             flow,
             largest_speed,
+            unknowns,
+            seconds,
             solve,
-            evaluate,
+            evaluate: start.elapsed().as_secs_f64(),
         })
     }
 
-    /// The solution that a resolution is checked against.
-    fn check(
+    /// What a body of given motion does, `data` being its slip less the background.
+    fn of_given_motion(
         &self,
-        resolution: &Resolution,
-        evaluation: f64,
+        motion: RigidMotion,
+        discretization: &Discretization,
+        data: SurfaceModes,
+        modes: usize,
         progress: &dyn Progress,
-    ) -> Result<Solution, ProblemError> {
-        let modes = match self.velocity {
-            // A rigid motion has no more.
-            BoundaryVelocity::Rigid(_) => 1,
-            BoundaryVelocity::Field(_) => checking_modes(resolution.modes),
-        };
-        let finer = Resolution {
-            order: resolution.order + EXTRA_ORDER,
-            modes,
-            panels: resolution.panels.clone(),
-        };
-        self.solve(&finer, evaluation, progress)
+    ) -> Result<Disturbance, QuadratureError> {
+        let solver =
+            DirichletSolver::new(discretization.clone(), self.formulation, modes, progress)?;
+        let start = Instant::now();
+        let density = solver.solve(&motion.on(discretization).plus(1.0, &data));
+        Ok(Disturbance {
+            motion,
+            wrench: solver.wrench(&density),
+            layers: Layers::weighted(&density, solver.weights()),
+            unknowns: solver.unknowns(),
+            seconds: solver.seconds(),
+            solve: start.elapsed().as_secs_f64(),
+        })
     }
 
-    /// Modes of the boundary velocity, and its largest speed at the nodes.
-    fn data(&self, discretization: &Discretization, modes: usize) -> (SurfaceModes, f64) {
-        match self.velocity {
-            BoundaryVelocity::Rigid(motion) => {
-                let data = motion.on(discretization);
-                let speed = |node: &super::discretization::Node| {
-                    // The fastest point of a ring lies where the azimuth of the motion is extreme; eight azimuths are near enough.
-                    (0..8)
-                        .map(|k| {
-                            let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_4).sin_cos();
-                            motion
-                                .at(Vector3::new(node.r * cos, node.r * sin, node.z))
-                                .norm()
-                        })
-                        .fold(0.0, f64::max)
-                };
-                let largest = discretization.nodes().iter().map(speed).fold(0.0, f64::max);
-                (data, largest)
+    fn discretization(
+        &self,
+        panels: &Panels,
+        order: usize,
+    ) -> Result<Discretization, QuadratureError> {
+        Discretization::new(self.curve.clone(), panels.clone(), order)
+    }
+
+    /// The slip, and the largest speed of given motion and slip together; infinite if the slip is not finite.
+    fn slip_and_speed(&self, discretization: &Discretization, modes: usize) -> (SurfaceModes, f64) {
+        let motion = match self.motion {
+            Motion::Given(motion) => motion,
+            Motion::Free(_) => RigidMotion::rest(),
+        };
+        match self.slip {
+            Some(slip) => {
+                let whole = SurfaceModes::sample(discretization, modes, |x| motion.at(x) + slip(x));
+                let slip = whole.modes.plus(-1.0, &motion.on(discretization));
+                (slip, whole.largest)
             }
-            BoundaryVelocity::Field(field) => {
-                let sampled = SurfaceModes::sample(discretization, modes, field);
-                (sampled.modes, sampled.largest)
-            }
+            None => (
+                SurfaceModes::zero(0, discretization.nodes().len()),
+                largest_speed(&motion, discretization),
+            ),
         }
     }
 
-    /// The modes that the boundary velocity needs to the tolerance.
-    fn modes_for(&self, resolution: &Resolution, tolerance: f64) -> Result<usize, ProblemError> {
-        let BoundaryVelocity::Field(field) = self.velocity else {
-            return Ok(1);
+    /// The last mode of rigid motions and the background, which are known exactly.
+    fn last_exact_mode(&self) -> usize {
+        if self.background.gradient == Matrix3::zeros() {
+            1
+        } else {
+            linear_flow::LAST_MODE
+        }
+    }
+
+    /// Modes of the solution that checks one of so many.
+    fn modes_of_check(&self, modes: usize) -> usize {
+        match self.slip {
+            Some(_) => checking_modes(modes),
+            None => self.last_exact_mode(),
+        }
+    }
+
+    /// Matrix entries for so many panels and modes where the solver chooses.
+    fn entries(&self, panels: usize, modes: usize) -> f64 {
+        let single = match self.motion {
+            Motion::Given(_) => 0,
+            Motion::Free(_) => 2,
         };
-        let discretization = self.discretization(resolution)?;
+        entries_of_check(panels, ORDER, self.modes_of_check(modes) + 1 + single)
+    }
+
+    /// The modes that the boundary velocity needs to the tolerance.
+    fn modes_for(&self, panels: &Panels, tolerance: f64) -> Result<usize, ProblemError> {
+        let least = self.last_exact_mode();
+        let Some(slip) = self.slip else {
+            return Ok(least);
+        };
+        let discretization = self.discretization(panels, ORDER)?;
         let mut modes = 32;
         loop {
-            let sampled = SurfaceModes::sample(&discretization, modes, field);
+            let sampled = SurfaceModes::sample(&discretization, modes, slip);
             if !sampled.largest.is_finite() {
                 return Err(ProblemError::Velocity);
             }
@@ -359,51 +435,54 @@ impl Problem<'_> {
                 .find(|&n| sampled.modes.amplitude(n) > small)
                 .unwrap_or(0);
             if last < modes - modes / 8 || modes >= MOST_MODES {
-                return Ok(last.max(1));
+                return Ok(last.max(least));
             }
             modes = (2 * modes).min(MOST_MODES);
         }
     }
 }
 
-/// Tolerance of the flow's quadrature where the best is wanted.
-const EVALUATION: f64 = 1e-15;
+/// What a body adds to the undisturbed flow, and how it moves.
+struct Disturbance {
+    motion: RigidMotion,
+    wrench: Wrench,
+    layers: Layers,
+    unknowns: usize,
+    seconds: Seconds,
+    solve: f64,
+}
+
+/// What a body that hands on a force and torque does, `data` being its slip less the background.
+fn free(
+    wrench: Wrench,
+    discretization: &Discretization,
+    data: SurfaceModes,
+    modes: usize,
+    progress: &dyn Progress,
+) -> Result<Disturbance, QuadratureError> {
+    let solver = MobilitySolver::new(discretization.clone(), modes, progress)?;
+    let start = Instant::now();
+    let (motion, layers) = solver.solve(wrench, data);
+    Ok(Disturbance {
+        motion,
+        wrench,
+        layers,
+        unknowns: solver.unknowns(),
+        seconds: solver.seconds(),
+        solve: start.elapsed().as_secs_f64(),
+    })
+}
+
+/// The largest speed on the surface in a rigid motion; the azimuths that are looked at are near enough to the fastest.
+fn largest_speed(motion: &RigidMotion, discretization: &Discretization) -> f64 {
+    SurfaceModes::sample(discretization, 1, |x| motion.at(x)).largest
+}
 
 impl Solution {
-    fn seconds(&self) -> f64 {
-        let Seconds { assemble, factor } = self.seconds;
-        assemble + factor + self.solve + self.evaluate
-    }
-
-    /// The estimated error, from the solution that checks this one.
-    fn error(&self, check: &Self) -> f64 {
-        SAFETY * self.difference(check) + ROUNDING * self.thinness()
-    }
-
-    /// $A^2 / 12\pi a V$ for area, size and volume: 1 for a sphere and about that for a needle, but the aspect ratio of a disc, whose two
-    /// faces nearly cancel and lose as many digits.
-    fn thinness(&self) -> f64 {
-        let nodes = self.discretization.nodes();
-        // The volume is a third of the flux of the position, x . nu.
-        let flux: f64 = nodes
-            .iter()
-            .map(|n| n.weight * (n.r * n.normal[0] + n.z * n.normal[1]))
-            .sum();
-        let (area, size) = (self.discretization.area(), self.discretization.size());
-        (area * area / (8.0 * PI * PI * size * flux)).max(1.0)
-    }
-
     /// How far the answers of two solutions are apart, in the units of [`Answer::error_estimate`].
     fn difference(&self, other: &Self) -> f64 {
-        let size = self.discretization.size();
-        let velocity = (self.flow.iter().zip(&other.flow))
-            .map(|(a, b)| (a.velocity - b.velocity).norm())
-            .fold(0.0, f64::max);
-        let (a, b) = (self.wrench, other.wrench);
-        let scale = b.force.norm().max(b.torque.norm() / size);
-        let wrench = (a.force - b.force)
-            .norm()
-            .max((a.torque - b.torque).norm() / size);
+        let size = self.body_flow.discretization.size();
+        let speed = other.largest_speed;
         let relative = |difference: f64, scale: f64| {
             if difference == 0.0 {
                 0.0
@@ -411,37 +490,25 @@ impl Solution {
                 difference / scale
             }
         };
-        relative(velocity, self.largest_speed).max(relative(wrench, scale))
-    }
-
-    /// Panels on which the density is resolved worst, by the last two of its Legendre coefficients there.
-    ///
-    /// The difference of two densities would not do: what one panel misses spreads over all.
-    fn unresolved_panels(&self) -> Result<Vec<bool>, QuadratureError> {
-        let order = self.discretization.order();
-        let mut missed = vec![0.0; self.discretization.panels().len()];
-        for n in 0..self.density.modes() {
-            for k in 0..6 {
-                let values = self.density.component(n, k / 3, k % 3);
-                for (values, missed) in values.chunks(order).zip(&mut missed) {
-                    let coefficients = self.discretization.basis().coefficients(values)?;
-                    *missed += coefficients[order - 2..].iter().map(|c| c * c).sum::<f64>();
-                }
-            }
-        }
-        for (panel, missed) in missed.iter_mut().enumerate() {
-            *missed *= self
-                .discretization
-                .nodes_of(panel)
-                .iter()
-                .map(|n| n.weight)
-                .sum::<f64>();
-        }
-        let most = missed.iter().copied().fold(0.0, f64::max);
-        Ok(missed
-            .into_iter()
-            .map(|missed| missed >= MARKED * MARKED * most)
-            .collect())
+        let flow = (self.flow.iter().zip(&other.flow))
+            .map(|(a, b)| (a.velocity - b.velocity).norm())
+            .fold(0.0, f64::max);
+        let in_force = |wrench: Wrench| wrench.force.norm().max(wrench.torque.norm() / size);
+        let in_velocity = |motion: RigidMotion| {
+            motion
+                .velocity
+                .norm()
+                .max(size * motion.angular_velocity.norm())
+        };
+        let wrench = relative(
+            in_force(self.wrench - other.wrench),
+            in_force(other.wrench).max(SMALL * 6.0 * PI * size * speed),
+        );
+        let motion = relative(
+            in_velocity(self.body_flow.motion - other.body_flow.motion),
+            in_velocity(other.body_flow.motion).max(SMALL * speed),
+        );
+        relative(flow, self.largest_speed).max(wrench).max(motion)
     }
 
     fn answer(self, resolution: Resolution, error_estimate: f64, estimate: f64) -> Answer {
@@ -454,13 +521,22 @@ impl Solution {
             estimate,
         };
         Answer {
+            motion: self.body_flow.motion,
             wrench: self.wrench,
             unknowns: self.unknowns,
             flow: self.flow,
+            body_flow: self.body_flow,
             error_estimate,
             resolution,
             largest_speed: self.largest_speed,
             timings,
         }
+    }
+}
+
+impl Timings {
+    /// The stages of the reported solution.
+    fn own(&self) -> f64 {
+        self.assemble + self.factor + self.solve + self.evaluate
     }
 }

@@ -26,6 +26,14 @@ pub struct Wrench {
 }
 
 impl RigidMotion {
+    /// No motion.
+    pub fn rest() -> Self {
+        Self {
+            velocity: Vector3::zeros(),
+            angular_velocity: Vector3::zeros(),
+        }
+    }
+
     /// The velocity at `x`.
     pub fn at(&self, x: Vector3<f64>) -> Vector3<f64> {
         self.velocity + self.angular_velocity.cross(&x)
@@ -54,7 +62,48 @@ impl RigidMotion {
     }
 }
 
+impl std::ops::Neg for RigidMotion {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self {
+            velocity: -self.velocity,
+            angular_velocity: -self.angular_velocity,
+        }
+    }
+}
+
+impl std::ops::Sub for RigidMotion {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self {
+            velocity: self.velocity - other.velocity,
+            angular_velocity: self.angular_velocity - other.angular_velocity,
+        }
+    }
+}
+
+impl std::ops::Sub for Wrench {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self {
+            force: self.force - other.force,
+            torque: self.torque - other.torque,
+        }
+    }
+}
+
 impl Wrench {
+    /// No force, no torque.
+    pub fn zero() -> Self {
+        Self {
+            force: Vector3::zeros(),
+            torque: Vector3::zeros(),
+        }
+    }
+
     /// The integrals of a density and of $x \times$ the density over the surface.
     pub fn of(discretization: &Discretization, density: &SurfaceModes) -> Self {
         let mut force = Vector3::zeros();

@@ -118,6 +118,17 @@ impl SurfaceModes {
         }
     }
 
+    /// The field plus another one, on the same nodes, times a number.
+    pub fn plus(mut self, factor: f64, other: &Self) -> Self {
+        debug_assert_eq!(self.nodes, other.nodes);
+        self.modes = self.modes.max(other.modes);
+        self.values.resize(self.modes * 6 * self.nodes, 0.0);
+        for (value, other) in self.values.iter_mut().zip(&other.values) {
+            *value += factor * other;
+        }
+        self
+    }
+
     /// Modes, counting the zeroth.
     pub fn modes(&self) -> usize {
         self.modes

@@ -14,9 +14,13 @@ pub enum Slip {
         /// The amplitudes `b_1, b_2, ...`, velocities.
         b: Vec<f64>,
     },
-    /// From one pole of a spheroid to the other.
+    /// From the upper pole of a spheroid to the lower.
     PoleToPole {
-        /// Speed scale of the slip.
+        /// Semi-axis of the spheroid along its axis.
+        polar: f64,
+        /// Semi-axis across it.
+        equatorial: f64,
+        /// Speed at the equator, down the axis if positive.
         speed: f64,
     },
 }
@@ -46,11 +50,17 @@ pub(super) fn read_slip(node: Node<'_>, shape: &ShapeSpec) -> Result<Slip, CaseE
         }
         Kind::PoleToPole => {
             section.check(&["kind", "speed"])?;
-            if !matches!(shape, ShapeSpec::Sphere { .. } | ShapeSpec::Spheroid { .. }) {
-                return Err(kind_node.expected("a spheroid, the only shape with this slip"));
-            }
+            let (polar, equatorial) = match *shape {
+                ShapeSpec::Sphere { radius } => (radius, radius),
+                ShapeSpec::Spheroid { polar, equatorial } => (polar, equatorial),
+                _ => return Err(kind_node.expected("a spheroid, the only shape with this slip")),
+            };
             let speed = section.required("speed", "a velocity")?.number()?;
-            Ok(Slip::PoleToPole { speed })
+            Ok(Slip::PoleToPole {
+                polar,
+                equatorial,
+                speed,
+            })
         }
     }
 }

@@ -1,13 +1,12 @@
 //! Parts of the format that are read but cannot be solved yet.
 
-use super::{Case, CaseError, Motion};
+use super::{Case, CaseError, Formulation, Motion};
 
 /// Refuses a case that needs what is not built, naming all of it at the line of the first.
 pub(super) fn check(case: &Case) -> Result<(), CaseError> {
     let mut missing: Vec<(usize, String)> = Vec::new();
     let sections = [
         ("[time]", case.time.as_ref().map(|s| s.line)),
-        ("[background]", case.background.as_ref().map(|s| s.line)),
         ("[output]", case.output.as_ref().map(|s| s.line)),
     ];
     for (name, line) in sections {
@@ -17,11 +16,11 @@ pub(super) fn check(case: &Case) -> Result<(), CaseError> {
         let given = case.bodies.len();
         missing.push((second.line, format!("more than one body ({given} given)")));
     }
-    // with [test] the known flow replaces what bodies impose
-    if case.test.is_none() {
+    if case.test.is_some() {
+        let line = case.background.as_ref().map(|s| s.line);
+        missing.extend(line.map(|line| (line, "[background] beside [test]".to_owned())));
+    } else if case.solver.formulation == Formulation::SingleLayer {
         missing.extend(first_free(case));
-        let slip = case.bodies.iter().find_map(|body| body.slip.as_ref());
-        missing.extend(slip.map(|slip| (slip.line, "slip".to_owned())));
     }
     let Some(&(line, _)) = missing.first() else {
         return Ok(());
@@ -33,6 +32,6 @@ pub(super) fn check(case: &Case) -> Result<(), CaseError> {
 fn first_free(case: &Case) -> Option<(usize, String)> {
     let free = |motion: &Motion| matches!(motion, Motion::Free { .. });
     let body = case.bodies.iter().find(|body| free(&body.motion))?;
-    let name = "force and torque imposed on a free body";
+    let name = "the single-layer formulation of a free body";
     Some((body.motion.line, name.to_owned()))
 }

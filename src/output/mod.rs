@@ -2,8 +2,11 @@
 
 pub mod plot;
 mod report;
+mod resistance;
 pub mod study;
 mod table;
 
 pub use report::{BodyReport, Discretization, KnownFlowReport, ProbeReport, Report, Timings};
+pub use resistance::{ResistanceReport, ShapeReport};
+use table::error_line;
 pub use table::table;

@@ -36,6 +36,8 @@ pub struct BodyReport {
     pub force: [f64; 3],
     /// Torque about the centre exerted by the body on the fluid.
     pub torque: [f64; 3],
+    /// Stresslet about the centre, row by row: symmetric, without trace.
+    pub stresslet: [[f64; 3]; 3],
 }
 
 /// The flow at one probe.
@@ -99,6 +101,9 @@ impl Report {
             ];
             if let Some((name, _)) = quantities.iter().find(|(_, v)| !finite(v)) {
                 return Some(format!("bodies[{i}].{name}"));
+            }
+            if !body.stresslet.iter().all(finite) {
+                return Some(format!("bodies[{i}].stresslet"));
             }
         }
         for (i, probe) in self.probes.iter().enumerate() {

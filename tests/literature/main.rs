@@ -1,6 +1,12 @@
-//! Resistance of bodies against values that were found in other ways.
+//! Resistance, mobility and swimming of bodies against values that were found in other ways.
 
 mod bodies;
+mod faxen;
+mod jeffery;
+mod keller_wu;
+mod matrices;
 mod reciprocity;
 mod resistance;
 mod spheroids;
+mod squirmer;
+mod stresslet;

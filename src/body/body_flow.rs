@@ -1,0 +1,83 @@
+//! The flow around a body as it was solved for: the undisturbed flow and what the body adds to it.
+
+use nalgebra::{Matrix3, Point3};
+
+use super::discretization::Discretization;
+use super::flow::{Flow, FlowError};
+use super::layers::Layers;
+use super::linear_flow::LinearFlow;
+use super::rigid::{RigidMotion, Wrench};
+use super::stresslet::stresslet;
+use super::surface::SurfaceModes;
+use crate::kernel::{FlowAt, FlowGradientAt};
+
+/// Everything that a solved problem is made of, in the body's frame and for viscosity 1: the flow is
+///
+/// $$ u = u_\infty + D[\sigma] + S[\varrho], $$
+///
+/// and on the surface $u = U + \Omega \times x + u_s$.
+#[derive(Clone, Debug)]
+pub struct BodyFlow {
+    /// Panels and nodes.
+    pub discretization: Discretization,
+    /// The densities $\sigma$ and $\varrho$ of the disturbance.
+    pub layers: Layers,
+    /// The undisturbed flow $u_\infty$.
+    pub background: LinearFlow,
+    /// The rigid motion $U$, $\Omega$ of the body, about the origin.
+    pub motion: RigidMotion,
+    /// The velocity $u_s$ of the surface relative to the rigid motion.
+    pub slip: SurfaceModes,
+}
+
+impl BodyFlow {
+    /// The flow that the body adds to the undisturbed one.
+    pub fn disturbance(&self) -> Flow<'_> {
+        Flow::new(&self.discretization, self.layers.clone())
+    }
+
+    /// Velocity and pressure of the whole flow at every target, to the tolerance of [`Flow::at`].
+    ///
+    /// # Errors
+    /// As [`Flow::at`].
+    pub fn at(&self, targets: &[Point3<f64>], tolerance: f64) -> Result<Vec<FlowAt>, FlowError> {
+        let mut flow = self.disturbance().at(targets, tolerance)?;
+        for (flow, target) in flow.iter_mut().zip(targets) {
+            flow.velocity += self.background.at(target.coords);
+        }
+        Ok(flow)
+    }
+
+    /// The same with the velocity gradient, and so the stress.
+    ///
+    /// # Errors
+    /// As [`Flow::gradient_at`].
+    pub fn gradient_at(
+        &self,
+        targets: &[Point3<f64>],
+        tolerance: f64,
+    ) -> Result<Vec<FlowGradientAt>, FlowError> {
+        let mut flow = self.disturbance().gradient_at(targets, tolerance)?;
+        for (flow, target) in flow.iter_mut().zip(targets) {
+            flow.velocity += self.background.at(target.coords);
+            flow.gradient += self.background.gradient;
+        }
+        Ok(flow)
+    }
+
+    /// Force and torque (about the origin) that the body exerts on the fluid: of the single layer alone, since neither a
+    /// double layer nor a linear flow exerts any.
+    pub fn wrench(&self) -> Wrench {
+        Wrench::of(&self.discretization, &self.layers.single)
+    }
+
+    /// The stresslet about the origin, of the disturbance; see [`stresslet`].
+    pub fn stresslet(&self) -> Matrix3<f64> {
+        stresslet(&self.discretization, &self.layers)
+    }
+
+    /// The velocity of the surface, rigid motion and slip.
+    pub fn surface_velocity(&self) -> SurfaceModes {
+        self.motion.on(&self.discretization).plus(1.0, &self.slip)
+    }
+}

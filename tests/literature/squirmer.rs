@@ -1,0 +1,50 @@
+//! The squirmer of Lighthill (1952) and Blake (1971): speed, stresslet, flow.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use axistokes::nalgebra::{Matrix3, Point3, Vector3};
+use axistokes::{Motion, Problem, Silent, Spheroid, Wrench, squirmer};
+
+#[test]
+fn swims_as_in_closed_form() {
+    for (radius, b) in [
+        (1.0, vec![1.5, 3.0]),
+        (2.0, vec![1.0, -2.0, 0.5]),
+        (0.5, vec![0.0, 1.0]),
+    ] {
+        let slip = squirmer(&b);
+        let above = Point3::new(0.0, 0.0, 1.5 * radius);
+        let problem = Problem {
+            motion: Motion::Free(Wrench::zero()),
+            slip: Some(&slip),
+            targets: &[above],
+            ..Problem::new(Arc::new(Spheroid::sphere(radius).expect("a sphere")))
+        };
+        let answer = problem.to_tolerance(1e-12, &Silent).expect("an answer");
+        let swimming = Vector3::new(0.0, 0.0, 2.0 * b[0] / 3.0);
+        let motion = (answer.motion.velocity - swimming).norm()
+            + radius * answer.motion.angular_velocity.norm();
+        let exact = 4.0 / 3.0
+            * PI
+            * radius
+            * radius
+            * b[1]
+            * Matrix3::from_diagonal(&Vector3::new(-1.0, -1.0, 2.0));
+        let stresslet = (answer.body_flow.stresslet() - exact).amax() / exact.amax();
+        // Blake 1971, equation 4, on the axis: P_n = 1 there.
+        let x = radius / above.z;
+        let modes = (b.iter().enumerate().skip(1)).map(|(k, b)| {
+            let n = (k + 1) as i32;
+            b * (x.powi(n + 2) - x.powi(n))
+        });
+        let exact = 2.0 / 3.0 * b[0] * x.powi(3) + modes.sum::<f64>();
+        let flow = (answer.flow[0].velocity - exact * Vector3::z()).norm();
+        println!(
+            "squirmer {b:?}: motion {motion:.1e}, stresslet {stresslet:.1e}, flow {flow:.1e}, estimate {:.1e}",
+            answer.error_estimate
+        );
+        assert!(motion <= 1e-10 && stresslet <= 1e-10 && flow <= 1e-10);
+        assert!(answer.error_estimate <= 1e-12);
+    }
+}

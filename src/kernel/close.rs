@@ -177,28 +177,19 @@ fn turned_vectors<S: Simd>(pair: &Pair<S>, m: &Moments<S>) -> [Lanes<S>; 27] {
         ..
     } = *pair;
     let factor = 1.0 / (4.0 * PI);
-    let [u, v] = square_moments(pair, m, factor);
+    let moments = square_moments(pair, m, factor);
     let (t_r, t_z) = (nu_z, -nu_r);
-    // An even component e0 + e1 c, an odd one o sin t.
-    let even = |e0: Lanes<S>, e1: Lanes<S>| {
-        [
-            e0 * (u[0] - u[1]) + e1 * (u[1] - u[2]),
-            e0 * v[0] + e1 * v[1],
-            e0 * u[0] + e1 * u[1],
-        ]
-    };
-    let odd = |o: Lanes<S>| [o * (v[0] - v[1]), o * (2.0 * u[1] - u[2]), o * v[0]];
     let zero = Lanes::splat(r.0, 0.0);
     let rows = [
-        even(a, rp),
-        odd(rp),
-        even(b, zero),
-        even(b, -b),
-        odd(-b),
-        even(-a, r),
-        odd(-(t_r * b + t_z * rp)),
-        even(t_z * a - t_r * b, t_z * rp + t_r * b),
-        odd(t_r * r),
+        moments.even(a, rp),
+        moments.odd(rp),
+        moments.even(b, zero),
+        moments.even(b, -b),
+        moments.odd(-b),
+        moments.even(-a, r),
+        moments.odd(-(t_r * b + t_z * rp)),
+        moments.even(t_z * a - t_r * b, t_z * rp + t_r * b),
+        moments.odd(t_r * r),
     ];
     let mut entries = [zero; 27];
     for (k, entry) in entries.iter_mut().enumerate() {
@@ -207,23 +198,50 @@ fn turned_vectors<S: Simd>(pair: &Pair<S>, m: &Moments<S>) -> [Lanes<S>; 27] {
     entries
 }
 
-/// `factor` times the moments of $c^k q^{-3/2}$ with $\cos nt$ ($k = 0, 1, 2$) and of $c^k \sin t\\, q^{-3/2}$ with $\sin nt$ ($k = 0, 1$).
+/// Moments of $c^k q^{-3/2}$ with $\cos nt$ ($k = 0, 1, 2$) and of $c^k \sin t\\, q^{-3/2}$ with $\sin nt$ ($k = 0, 1$).
+#[derive(Clone, Copy)]
+struct SquareMoments<S: Simd> {
+    cos: [Lanes<S>; 3],
+    sin: [Lanes<S>; 2],
+}
+
+/// The moments times `factor`.
 #[inline(always)]
-fn square_moments<S: Simd>(pair: &Pair<S>, m: &Moments<S>, factor: f64) -> [[Lanes<S>; 3]; 2] {
+fn square_moments<S: Simd>(pair: &Pair<S>, m: &Moments<S>, factor: f64) -> SquareMoments<S> {
     let over_big_r = factor * pair.inv_big_r;
     let twice_n_e0 = (2.0 * m.n) * m.e0;
-    [
-        [
+    SquareMoments {
+        cos: [
             factor * m.e1 * pair.inv_rho2,
             over_big_r * (m.e0 - m.e1),
             over_big_r * (m.e_minus1_over_big_r + pair.h * (m.e1 - 2.0 * m.e0)),
         ],
-        [
+        sin: [
             over_big_r * twice_n_e0,
             over_big_r * (m.e0_sin - pair.h * twice_n_e0),
-            Lanes::splat(pair.r.0, 0.0),
         ],
-    ]
+    }
+}
+
+// Methods, not closures: these would not be compiled for the instruction set that was chosen.
+impl<S: Simd> SquareMoments<S> {
+    /// The modes of $v \cos t$, $v \sin t$ and $v$ over $q^{3/2}$ for the even $v$ = `e0` + `e1` $c$.
+    #[inline(always)]
+    fn even(&self, e0: Lanes<S>, e1: Lanes<S>) -> [Lanes<S>; 3] {
+        let ([u0, u1, u2], [v0, v1]) = (self.cos, self.sin);
+        [
+            e0 * (u0 - u1) + e1 * (u1 - u2),
+            e0 * v0 + e1 * v1,
+            e0 * u0 + e1 * u1,
+        ]
+    }
+
+    /// The same for the odd $v$ = `o` $\sin t$.
+    #[inline(always)]
+    fn odd(&self, o: Lanes<S>) -> [Lanes<S>; 3] {
+        let ([_, u1, u2], [v0, v1]) = (self.cos, self.sin);
+        [o * (v0 - v1), o * (2.0 * u1 - u2), o * v0]
+    }
 }
 
 /// Modes of $-\frac{3}{8\pi} \bar x_i \bar x_l \bar x'_k / |\bar x|^5$, the first two indices in the target's frame, the last in the source's.
@@ -288,15 +306,12 @@ fn moved<S: Simd>(
         -(nu_r * ys_r + nu_z * ys_z),
         nu_z * ys_t - yt_r,
     ];
-    let twice = |rho: Lanes<S>, tau: Lanes<S>| rho + (tau + tau);
-    [
-        [
-            twice(rho_r, tau[0]),
-            twice(rho_t, tau[1]),
-            twice(rho_z, tau[2]),
-        ],
-        tau,
-    ]
+    let moved = [
+        rho_r + (tau[0] + tau[0]),
+        rho_t + (tau[1] + tau[1]),
+        rho_z + (tau[2] + tau[2]),
+    ];
+    [moved, tau]
 }
 
 /// Velocity and pressure from their entries.
@@ -332,14 +347,17 @@ fn turned<S: Simd>(
     density: &[Lanes<S>; 3],
     is_sin: [bool; 3],
 ) -> [Lanes<S>; 3] {
-    // From sin to cos an odd kernel changes sign.
-    let signed = |x: Lanes<S>, negative: bool| if negative { -x } else { x };
-    let like = |j: usize| signed(density[j], is_sin[j] && vector_is_odd);
-    let unlike = |j: usize| signed(density[j], is_sin[j] && !vector_is_odd);
+    // From sin to cos an odd kernel changes sign; sin t is as odd as the vector is not.
+    let [r, t, z] = *density;
+    let cos_r = if is_sin[0] && vector_is_odd { -r } else { r };
+    let cos_t = if is_sin[1] && vector_is_odd { -t } else { t };
+    let one_z = if is_sin[2] && vector_is_odd { -z } else { z };
+    let sin_r = if is_sin[0] && !vector_is_odd { -r } else { r };
+    let sin_t = if is_sin[1] && !vector_is_odd { -t } else { t };
     [
-        entries[0] * like(0) + entries[1] * unlike(1),
-        entries[0] * like(1) - entries[1] * unlike(0),
-        entries[2] * like(2),
+        entries[0] * cos_r + entries[1] * sin_t,
+        entries[0] * cos_t - entries[1] * sin_r,
+        entries[2] * one_z,
     ]
 }
 
@@ -372,12 +390,12 @@ impl Potential<GRADIENT, 13> for VelocityPressureGradient {
         let along_curve = [densities[9], densities[10], densities[11]];
         let mut of_moved = [[flow[3]; 3]; 3];
         for l in 0..3 {
-            let vector = |v: usize| &entries[FLOW + 9 * v + 3 * l..][..3];
-            let odd = |v: usize| VECTOR_IS_ODD[v][l];
-            of_moved[l] = turned(vector(0), odd(0), &moved, POLAR);
-            let of_tau = turned(vector(0), odd(0), &tau, POLAR);
-            let of_theta = turned(vector(1), odd(1), &along_theta, POLAR);
-            let of_curve = turned(vector(2), odd(2), &along_curve, AXIAL);
+            let [position, theta, curve] = [0, 1, 2].map(|v| FLOW + 9 * v + 3 * l);
+            let odd = VECTOR_IS_ODD.map(|odd| odd[l]);
+            of_moved[l] = turned(&entries[position..], odd[0], &moved, POLAR);
+            let of_tau = turned(&entries[position..], odd[0], &tau, POLAR);
+            let of_theta = turned(&entries[theta..], odd[1], &along_theta, POLAR);
+            let of_curve = turned(&entries[curve..], odd[2], &along_curve, AXIAL);
             for i in 0..3 {
                 fields[4 + 3 * i + l] = of_tau[i] + (of_theta[i] + of_curve[i]);
             }

@@ -131,9 +131,9 @@ impl<const K: usize, const FIELDS: usize, P: Potential<K, FIELDS>> WithSimd
                     }
                     let found = P::fields([pair.nu_r, pair.nu_z], &entries, &density);
                     let sums = &mut sums[family * FIELDS * PADDING..][..FIELDS * PADDING];
-                    for (i, found) in found.into_iter().enumerate() {
+                    for i in 0..FIELDS {
                         let sum = &mut sums[i * PADDING..][..PADDING];
-                        (Lanes::load(simd, sum, 0) + found).store(sum, 0);
+                        (Lanes::load(simd, sum, 0) + found[i]).store(sum, 0);
                     }
                 }
             }

@@ -10,14 +10,14 @@ use axistokes::curve::GeneratingCurve;
 use axistokes::nalgebra::{Point3, Vector3};
 use axistokes::*;
 
-const DISTANCES: [f64; 10] = [
-    3.0, 0.3, 1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12,
-];
+const DISTANCES: [f64; 10] = [3.0, 0.3, 1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
 const ROUNDS: usize = 7;
 const TOLERANCE: f64 = 1e-13;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    rayon::ThreadPoolBuilder::new().num_threads(1).build_global()?;
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .build_global()?;
     let curve = Arc::new(Spheroid::new(1.0, 0.5)?);
     let panels = Panels::equal_arcs(&*curve, 8)?;
     let nodes = Discretization::new(curve.clone(), panels, 16)?;

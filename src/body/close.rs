@@ -13,7 +13,9 @@ use super::densities::Densities;
 use super::discretization::{Discretization, Node};
 use super::near::{NearNodes, NearRules, Sight};
 use crate::curve::{Meridian, Topology};
-use crate::kernel::{Modes, Potential, RingDensities, SourceRings, TargetRing, Workspace};
+use crate::kernel::{
+    Modes, Potential, RingDensities, RingFields, SourceRings, TargetRing, Workspace,
+};
 
 /// Rules for close rings.
 #[derive(Debug)]
@@ -27,25 +29,14 @@ pub(super) struct CloseFlow {
 pub(super) struct Buffers {
     near: NearNodes,
     sources: SourceRings,
-    /// Where each source's density comes from, and its quadrature weight.
-    origins: Vec<Origin>,
-    weights: Vec<f64>,
-    interpolation: Vec<f64>,
     gathered: Vec<f64>,
     densities: RingDensities,
     workspace: Workspace,
-    /// The fields found.
-    pub fields: Vec<f64>,
+    fields: RingFields,
 }
 
-/// Where a source's density comes from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Origin {
-    /// It is this node of the discretization.
-    Node(usize),
-    /// It is interpolated from this panel, with row so-and-so of the interpolation.
-    Panel { panel: usize, row: usize },
-}
+/// Sources done at a time: their densities fit a core's cache.
+const BLOCK: usize = 64;
 
 impl CloseFlow {
     /// Rules for panels of `order` nodes and so many modes, counting the zeroth.
@@ -56,8 +47,7 @@ impl CloseFlow {
         })
     }
 
-    /// Fills `buffers.fields` with all modes of the fields of the densities on `panels`: field `i` of family `f` of mode `n` is number
-    /// `(2 n + f) FIELDS + i`.
+    /// All modes of the fields of the densities on `panels`: field `i` of family `f` of mode `n` is number `(2 n + f) FIELDS + i`.
     pub fn fields<const K: usize, const FIELDS: usize>(
         &self,
         discretization: &Discretization,
@@ -66,122 +56,92 @@ impl CloseFlow {
         sight: &Sight,
         panels: impl Iterator<Item = usize>,
         buffers: &mut Buffers,
-    ) -> Result<(), QuadratureError> {
-        buffers.collect(discretization, &self.rules, sight, panels)?;
+    ) -> Result<Vec<f64>, QuadratureError> {
+        let point = sight.point();
         let target = TargetRing {
-            r: sight.point().r,
+            r: point.r,
             normal: [0.0; 2],
         };
-        self.engine
-            .arrange(target, &buffers.sources, &mut buffers.workspace);
-        buffers.interpolate(discretization, densities);
-        self.engine.fields(
-            potential,
-            target,
-            &buffers.sources,
-            &buffers.densities,
-            &mut buffers.workspace,
-            &mut buffers.fields,
-        );
-        Ok(())
+        buffers.fields.reset(2 * densities.modes() * FIELDS);
+        for panel in panels {
+            let near = &mut buffers.near;
+            if self.rules.is_far(discretization, point, panel) {
+                near.take_own_nodes(discretization, sight, panel);
+            } else {
+                self.rules
+                    .fill_off_curve(discretization, sight, panel, near)?;
+            }
+            for first in (0..buffers.near.nodes.len()).step_by(BLOCK) {
+                buffers.sources.clear();
+                let near = &buffers.near;
+                for (node, &separation) in near
+                    .nodes
+                    .iter()
+                    .zip(&near.separation)
+                    .skip(first)
+                    .take(BLOCK)
+                {
+                    buffers.sources.push(node.r, separation, node.normal);
+                }
+                self.engine
+                    .arrange(target, &buffers.sources, &mut buffers.workspace);
+                buffers.interpolate(discretization, densities, panel, first);
+                self.engine.add_fields(
+                    potential,
+                    target,
+                    &buffers.sources,
+                    &buffers.densities,
+                    &mut buffers.workspace,
+                    &mut buffers.fields,
+                );
+            }
+        }
+        Ok(buffers.fields.values().collect())
     }
 }
 
 impl Buffers {
-    /// The sources on the panels that resolve their action on the point.
-    fn collect(
+    /// The densities at the sources, which begin with near node `first`, in the order of the workspace.
+    fn interpolate(
         &mut self,
         discretization: &Discretization,
-        rules: &NearRules,
-        sight: &Sight,
-        panels: impl Iterator<Item = usize>,
-    ) -> Result<(), QuadratureError> {
-        let order = discretization.order();
-        let point = sight.point();
-        self.sources.clear();
-        self.origins.clear();
-        self.weights.clear();
-        self.interpolation.clear();
-        for panel in panels {
-            if rules.is_far(discretization, point, panel) {
-                for (k, node) in discretization.nodes_of(panel).iter().enumerate() {
-                    let separation = [point.r - node.r, point.z - node.z];
-                    self.sources.push(node.r, separation, node.normal);
-                    self.origins.push(Origin::Node(panel * order + k));
-                    self.weights.push(node.weight);
-                }
-            } else {
-                rules.fill_off_curve(discretization, sight, panel, &mut self.near)?;
-                for (node, &separation) in self.near.nodes.iter().zip(&self.near.separation) {
-                    self.sources.push(node.r, separation, node.normal);
-                    self.weights.push(node.weight);
-                }
-                let first = self.interpolation.len() / order;
-                let rows = first..first + self.near.nodes.len();
-                self.origins
-                    .extend(rows.map(|row| Origin::Panel { panel, row }));
-                self.interpolation.extend(&self.near.interpolation);
-            }
-        }
-        Ok(())
-    }
-
-    /// The densities at the sources, in the order of the workspace.
-    fn interpolate(&mut self, discretization: &Discretization, densities: &Densities) {
+        densities: &Densities,
+        panel: usize,
+        first: usize,
+    ) {
         let (order, nodes) = (discretization.order(), discretization.nodes().len());
         let (rows, values) = (densities.rows(), densities.values());
         let columns = &self.workspace.order;
         self.densities.resize(rows, self.workspace.columns());
-        let mut first = 0;
-        while first < columns.len() {
-            // A run of consecutive columns from one panel, all near or all far.
-            let place = self.workspace.column(first);
-            let panel = |k: usize| match self.origins[columns[k]] {
-                Origin::Node(_) => None,
-                Origin::Panel { panel, .. } => Some(panel),
-            };
-            let home = panel(first);
-            let length = (first..columns.len())
-                .take_while(|&k| panel(k) == home && self.workspace.column(k) == place + k - first)
-                .count();
+        let stride = self.densities.stride;
+        // Near and far columns stand apart.
+        let near = self.workspace.columns().near;
+        for run in [0..near, near..columns.len()] {
+            if run.is_empty() {
+                continue;
+            }
+            let (place, length) = (self.workspace.column(run.start), run.len());
             self.gathered.clear();
-            for &source in &columns[first..first + length] {
-                let weight = self.weights[source];
-                match self.origins[source] {
-                    Origin::Node(node) => {
-                        let column = place + self.gathered.len();
-                        self.gathered.push(weight);
-                        for row in 0..rows {
-                            self.densities.values[row * self.densities.stride + column] =
-                                weight * values[row * nodes + node];
-                        }
-                    }
-                    Origin::Panel { row, .. } => self.gathered.extend(
-                        self.interpolation[row * order..][..order]
-                            .iter()
-                            .map(|l| l * weight),
-                    ),
-                }
+            for &source in &columns[run] {
+                let weight = self.near.nodes[first + source].weight;
+                let row = &self.near.interpolation[(first + source) * order..][..order];
+                self.gathered.extend(row.iter().map(|l| l * weight));
             }
-            if let Some(panel) = home {
-                let stride = self.densities.stride;
-                matmul(
-                    MatMut::from_column_major_slice_with_stride_mut(
-                        &mut self.densities.values,
-                        stride,
-                        rows,
-                        stride,
-                    )
-                    .subrows_mut(place, length),
-                    Accum::Replace,
-                    MatRef::from_column_major_slice(&self.gathered, order, length).transpose(),
-                    MatRef::from_column_major_slice_with_stride(values, nodes, rows, nodes)
-                        .subrows(panel * order, order),
-                    1.0,
-                    Par::Seq,
-                );
-            }
-            first += length;
+            matmul(
+                MatMut::from_column_major_slice_with_stride_mut(
+                    &mut self.densities.values,
+                    stride,
+                    rows,
+                    stride,
+                )
+                .subrows_mut(place, length),
+                Accum::Replace,
+                MatRef::from_column_major_slice(&self.gathered, order, length).transpose(),
+                MatRef::from_column_major_slice_with_stride(values, nodes, rows, nodes)
+                    .subrows(panel * order, order),
+                1.0,
+                Par::Seq,
+            );
         }
     }
 }

@@ -114,16 +114,14 @@ impl<'a> Flow<'a> {
             .map_init(close::Buffers::default, |buffers, node| {
                 let sight = limit(discretization, Sight::on(node), node.normal, side);
                 let panels = 0..discretization.panels().len();
-                let potential = VelocityPressureGradient;
-                close.fields(
+                Ok(close.fields(
                     discretization,
                     densities,
-                    &potential,
+                    &VelocityPressureGradient,
                     &sight,
                     panels,
                     buffers,
-                )?;
-                Ok(buffers.fields.clone())
+                )?)
             })
             .collect::<Result<_, FlowError>>()?;
         let mut traction = SurfaceModes::zero(densities.modes() - 1, nodes.len());
@@ -243,17 +241,16 @@ impl<'a> Flow<'a> {
         let count = discretization.panels().len();
         let is_kept = |&panel: &usize| separation.is_kept(discretization, point, panel);
         let near = (0..count).filter(|panel| !is_kept(panel));
-        if GRADIENT {
+        let fields = if GRADIENT {
             let potential = VelocityPressureGradient;
-            close.fields(discretization, densities, &potential, &sight, near, buffers)?;
+            close.fields(discretization, densities, &potential, &sight, near, buffers)?
         } else {
             let potential = VelocityPressure;
-            close.fields(discretization, densities, &potential, &sight, near, buffers)?;
-        }
-        let fields = &buffers.fields;
+            close.fields(discretization, densities, &potential, &sight, near, buffers)?
+        };
         let mut found = Vec::with_capacity(ring.len());
         for &index in ring {
-            let mut at = at_azimuth::<GRADIENT>(fields, &targets[index]);
+            let mut at = at_azimuth::<GRADIENT>(&fields, &targets[index]);
             for panel in (0..count).filter(is_kept) {
                 at += far.points.sum::<GRADIENT>(far.panel(panel), targets[index]);
             }

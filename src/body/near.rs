@@ -349,6 +349,19 @@ fn offsets(discretization: &Discretization, sight: &Sight, panel: usize) -> [f64
 }
 
 impl NearNodes {
+    /// The panel's own nodes, for a point that they resolve it for.
+    pub fn take_own_nodes(&mut self, discretization: &Discretization, sight: &Sight, panel: usize) {
+        self.clear();
+        let point = sight.point();
+        let order = discretization.order();
+        self.nodes.extend(discretization.nodes_of(panel));
+        self.separation
+            .extend((self.nodes.iter()).map(|node| [point.r - node.r, point.z - node.z]));
+        for k in 0..order {
+            self.next_row(order)[k] = 1.0;
+        }
+    }
+
     fn clear(&mut self) {
         self.nodes.clear();
         self.separation.clear();

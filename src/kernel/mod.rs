@@ -47,7 +47,7 @@ pub use direct::{FlowAt, FlowGradientAt};
 pub(crate) use direct::{SurfacePoint, SurfacePoints};
 pub(crate) use double_layer::DoubleLayer;
 pub(crate) use modes::{Kernel, Modes, SourceRings, TargetRing, Workspace};
-pub(crate) use potential::RingDensities;
+pub(crate) use potential::{RingDensities, RingFields};
 pub(crate) use pressure::{DoubleLayerPressure, SingleLayerPressure};
 pub use rings::{Ring, RingKernel};
 pub(crate) use single_layer::SingleLayer;

@@ -116,7 +116,6 @@ pub(crate) struct Workspace {
     packed: [Vec<f64>; 7],
     pub(super) ladder: LadderSpace,
     pub(super) fourier: fourier::Workspace,
-    pub(super) sums: Vec<f64>,
 }
 
 /// Room for the toroidal functions of one register.

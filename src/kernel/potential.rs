@@ -20,27 +20,29 @@ pub(crate) struct RingDensities {
 }
 
 impl RingDensities {
-    /// Makes room; the columns between near and far rings are zero.
+    /// Makes room; columns that pad the near rings' last register are zero.
     pub fn resize(&mut self, rows: usize, columns: Columns) {
-        self.stride = columns.near + columns.far;
-        self.values.clear();
+        self.stride = padded(columns.near) + padded(columns.far);
         self.values.resize(rows * self.stride, 0.0);
+        for row in self.values.chunks_mut(self.stride.max(1)) {
+            row[columns.near..padded(columns.near)].fill(0.0);
+        }
     }
 }
 
-/// Columns of near rings and of the others, with those that pad the last register.
+/// How many rings are near and how many are not.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Columns {
-    near: usize,
-    far: usize,
+    pub near: usize,
+    pub far: usize,
 }
 
 impl Workspace {
     /// The columns that densities need for the rings it was arranged for.
     pub fn columns(&self) -> Columns {
         Columns {
-            near: padded(self.near),
-            far: padded(self.order.len() - self.near),
+            near: self.near,
+            far: self.order.len() - self.near,
         }
     }
 
@@ -55,20 +57,18 @@ impl Workspace {
 }
 
 impl Modes {
-    /// The modes of the potential's fields at `target`: field `i` of family `f` of mode `n` is number `(2 n + f) FIELDS + i`.
+    /// Adds to `fields` the modes of the potential's fields at `target`.
     ///
     /// `workspace` must have been arranged for the same rings.
-    pub fn fields<const K: usize, const FIELDS: usize>(
+    pub fn add_fields<const K: usize, const FIELDS: usize>(
         &self,
         potential: &impl Potential<K, FIELDS>,
         target: TargetRing,
         sources: &SourceRings,
         densities: &RingDensities,
         workspace: &mut Workspace,
-        fields: &mut Vec<f64>,
+        fields: &mut RingFields,
     ) {
-        fields.clear();
-        fields.resize(2 * self.count() * FIELDS, 0.0);
         if sources.len() > 0 {
             Arch::new().dispatch(Fields::<K, FIELDS, _> {
                 modes: self,
@@ -83,6 +83,28 @@ impl Modes {
     }
 }
 
+/// Modes of the fields on a ring: field `i` of family `f` of mode `n` is number `(2 n + f) FIELDS + i`.
+#[derive(Debug, Default)]
+pub(crate) struct RingFields {
+    /// Each field's partial sums, one for each lane of a register.
+    lanes: Vec<f64>,
+}
+
+impl RingFields {
+    /// So many fields, all zero.
+    pub fn reset(&mut self, count: usize) {
+        self.lanes.clear();
+        self.lanes.resize(count * PADDING, 0.0);
+    }
+
+    /// The fields, field after field.
+    pub fn values(&self) -> impl Iterator<Item = f64> {
+        self.lanes
+            .chunks_exact(PADDING)
+            .map(|lanes| lanes.iter().sum())
+    }
+}
+
 struct Fields<'a, const K: usize, const FIELDS: usize, P: Potential<K, FIELDS>> {
     modes: &'a Modes,
     potential: &'a P,
@@ -90,7 +112,7 @@ struct Fields<'a, const K: usize, const FIELDS: usize, P: Potential<K, FIELDS>> 
     sources: &'a SourceRings,
     densities: &'a RingDensities,
     workspace: &'a mut Workspace,
-    fields: &'a mut [f64],
+    fields: &'a mut RingFields,
 }
 
 impl<const K: usize, const FIELDS: usize, P: Potential<K, FIELDS>> WithSimd
@@ -111,10 +133,7 @@ impl<const K: usize, const FIELDS: usize, P: Potential<K, FIELDS>> WithSimd
         } = self;
         let splat = |x| Lanes::splat(simd, x);
         let (r, none) = (splat(target.r), splat(0.0));
-        // Sums over the lanes are left to the end.
-        let mut sums = std::mem::take(&mut workspace.sums);
-        sums.clear();
-        sums.resize(2 * modes.count() * FIELDS * PADDING, 0.0);
+        let sums = &mut fields.lanes;
         let near = workspace.near.div_ceil(S::F64_LANES);
         for register in 0..near {
             let (pair, q0, d0) = workspace.pair(simd, register, r, [none, none]);
@@ -138,10 +157,6 @@ impl<const K: usize, const FIELDS: usize, P: Potential<K, FIELDS>> WithSimd
                 }
             }
         }
-        for (field, sums) in fields.iter_mut().zip(sums.chunks(PADDING)) {
-            *field = sums[..S::F64_LANES].iter().sum();
-        }
-        workspace.sums = sums;
         // Well-separated pairs: all entries' modes by FFT, and the same contraction in scalars.
         let fourier = modes.fourier();
         let mut entries = std::mem::take(&mut workspace.block);
@@ -176,8 +191,8 @@ impl<const K: usize, const FIELDS: usize, P: Potential<K, FIELDS>> WithSimd
                         density.1 = densities.values[row + column];
                     }
                     let found = P::fields(normal, &mode, &density);
-                    for (field, found) in fields[family * FIELDS..].iter_mut().zip(found) {
-                        *field += found.1;
+                    for (i, found) in found.iter().enumerate() {
+                        sums[(family * FIELDS + i) * PADDING] += found.1;
                     }
                 }
             }

@@ -44,3 +44,4 @@ pub mod slip;
 mod storage;
 pub mod stresslet;
 pub mod surface;
+mod traction;

@@ -1,5 +1,6 @@
-//! What an answer looks like: as JSON, as tables for people, as CSV and as plots.
+//! What an answer looks like: as JSON, as tables for people, as CSV, as plots and as pictures.
 
+pub mod picture;
 pub mod plot;
 mod report;
 pub mod study;

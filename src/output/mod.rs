@@ -1,10 +1,11 @@
-//! What an answer looks like: as JSON, as tables for people, as CSV, as plots and as pictures.
+//! What an answer looks like: as JSON, as tables for people, as CSV, as plots and pictures, and as VTK files.
 
 pub mod picture;
 pub mod plot;
 mod report;
 pub mod study;
 mod table;
+pub mod vtk;
 
 pub use report::{BodyReport, Discretization, KnownFlowReport, ProbeReport, Report, Timings};
 pub use table::table;

@@ -65,6 +65,7 @@
 //! | [`output`] | reports as tables and JSON, plots; on top of [`plane`], pictures and VTK files |
 //! | [`mod@solve`] | from a case to its report: frames and viscosity |
 //! | [`plane`] | the flow in a plane: grids, sections, streamlines |
+//! | [`mod@resistance`] | from a case to the resistance of its shapes |
 //! | [`study`] | the convergence study |
 //! | [`progress`] | how a long computation tells where it is |
 //!
@@ -77,6 +78,7 @@ pub mod kernel;
 pub mod output;
 pub mod plane;
 pub mod progress;
+pub mod resistance;
 pub mod solve;
 pub mod special;
 pub mod study;

@@ -12,6 +12,7 @@ Examples:
   axistokes solve sphere-drag.toml --json     the answer as one JSON object
   axistokes solve sphere-drag.toml --picture flow.svg
                                               speed and streamlines as a picture, too
+  axistokes resistance sphere-drag.toml       resistance and mobility of its shapes
   axistokes --threads 4 converge --quick      the convergence study, small, on four threads
 
 Exit status: 0 solved, 2 bad input (one line on stderr, nothing written),
@@ -33,6 +34,12 @@ A first case, the drag of a sphere (the force is 6 pi in z):
 
   [probes]
   points = [[0.0, 0.0, 2.0]]";
+
+const RESISTANCE_NOTE: &str = "\
+About each shape's origin, its axis along z: six by six matrices from velocity and
+angular velocity to the force and torque exerted on the fluid, and back; the functions
+XA YA YB XC YC and xa ya yb xc yc of Kim & Karrila (1991, sections 5.2, 5.3) for
+viscosity 1; and the centre of reaction, about which nothing couples.";
 
 const CONVERGE_NOTE: &str = "\
 The study: a spheroid 0.5 x 1, boundary data from five random Stokeslets inside,
@@ -60,6 +67,9 @@ pub enum Command {
     /// Solve a case once: forces, torques, velocities and pressure at the probes.
     #[command(after_help = SOLVE_EXAMPLE)]
     Solve(Solve),
+    /// Resistance and mobility matrices of the shapes of a case, with their scalar functions.
+    #[command(after_help = RESISTANCE_NOTE)]
+    Resistance(Resistance),
     /// Repeat the convergence study: errors over panels and modes, time over unknowns.
     #[command(after_help = CONVERGE_NOTE)]
     Converge(Converge),
@@ -114,6 +124,17 @@ impl From<PictureOf> for Quantity {
     }
 }
 
+/// Arguments of `resistance`.
+#[derive(Args, Debug)]
+pub struct Resistance {
+    /// The case file; only its shapes, accuracy and viscosity matter.
+    #[arg(value_name = "CASE.toml")]
+    pub case: PathBuf,
+    /// Print one JSON object and nothing else on stdout.
+    #[arg(long)]
+    pub json: bool,
+}
+
 /// Arguments of `converge`.
 #[derive(Args, Debug)]
 pub struct Converge {
@@ -147,7 +168,9 @@ fn order(text: &str) -> Result<usize, String> {
 pub fn explain(message: &clap::Error) -> ExitCode {
     use clap::error::ErrorKind;
     if message.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
-        streams::complain("no command: expected solve, converge or --help (see axistokes --help)");
+        streams::complain(
+            "no command: expected solve, resistance, converge or --help (see axistokes --help)",
+        );
         return ExitCode::from(2);
     }
     if !message.use_stderr() {

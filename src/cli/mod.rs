@@ -6,6 +6,7 @@ mod failure;
 mod files;
 mod folder;
 mod progress_bar;
+mod resistance;
 mod solve;
 mod streams;
 
@@ -36,6 +37,7 @@ fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(|error| Failure::Input(format!("--threads {}: {error}", arguments.threads)))?;
     match &arguments.command {
         Command::Solve(solve) => solve::run(solve),
+        Command::Resistance(arguments) => resistance::run(arguments),
         Command::Converge(converge) => converge::run(converge),
         Command::Simulate { .. } => Err(Failure::Input("not supported yet: simulate".into())),
     }

@@ -3,9 +3,12 @@
 pub mod picture;
 pub mod plot;
 mod report;
+mod resistance;
 pub mod study;
 mod table;
 pub mod vtk;
 
 pub use report::{BodyReport, Discretization, KnownFlowReport, ProbeReport, Report, Timings};
+pub use resistance::{ResistanceReport, ShapeReport};
+use table::error_line;
 pub use table::table;

@@ -41,22 +41,18 @@ fn write_table(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
     )
 }
 
+/// How an estimated error stands to the tolerance of the case.
+pub(super) fn error_line(case: &Case, estimate: f64) -> String {
+    let how = match case.tolerance() {
+        Some(tolerance) if estimate > tolerance => format!("MISSES the tolerance {tolerance:e}"),
+        Some(tolerance) => format!("within the tolerance {tolerance:e}"),
+        None => "discretisation chosen by hand".to_owned(),
+    };
+    format!("estimated error {estimate:.1e}, {how}")
+}
+
 fn write_error(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
-    let estimate = report.error_estimate;
-    match case.tolerance() {
-        Some(tolerance) if estimate > tolerance => writeln!(
-            out,
-            "estimated error {estimate:.1e}, MISSES the tolerance {tolerance:e}"
-        ),
-        Some(tolerance) => writeln!(
-            out,
-            "estimated error {estimate:.1e}, within the tolerance {tolerance:e}"
-        ),
-        None => writeln!(
-            out,
-            "estimated error {estimate:.1e}, discretisation chosen by hand"
-        ),
-    }?;
+    writeln!(out, "{}", error_line(case, report.error_estimate))?;
     writeln!(
         out,
         "  (velocities at probes: relative to the largest speed imposed; forces, torques and rigid velocities: to their largest)"
@@ -146,13 +142,14 @@ fn write_discretization(out: &mut String, shapes: &[Discretization]) -> fmt::Res
     Ok(())
 }
 
-fn numbers(vector: &[f64; 3]) -> String {
+pub(super) fn numbers<const N: usize>(vector: &[f64; N]) -> String {
     vector.map(number).join("  ")
 }
 
 /// Thirteen digits with a signed exponent of at least two, right-aligned.
-fn number(x: f64) -> String {
-    let text = format!("{x:.12e}");
+pub(super) fn number(x: f64) -> String {
+    // Zero has no sign here.
+    let text = format!("{:.12e}", x + 0.0);
     let text = match text.split_once('e').map(|(m, e)| (m, e.parse::<i32>())) {
         Some((mantissa, Ok(exponent))) => format!("{mantissa}e{exponent:+03}"),
         _ => text,

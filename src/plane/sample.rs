@@ -4,16 +4,15 @@ use nalgebra::Point3;
 use rayon::prelude::*;
 
 use super::{Plane, PlaneFlow};
-use crate::body::flow::FlowError;
 use crate::curve::{Meridian, Outline};
 use crate::kernel::FlowAt;
 use crate::progress::Progress;
-use crate::solve::{SolveError, Solved, SolvedBody};
+use crate::solve::{SolveError, Solved};
 
 /// Relative accuracy of what is drawn.
 const TOLERANCE: f64 = 1e-6;
 /// Points that are evaluated between two reports of progress.
-const CHUNK: usize = 2048;
+const CHUNK: usize = 1024;
 
 impl PlaneFlow {
     /// The flow of a solved case at the grid points of a plane, relative to the laboratory, to about six digits.
@@ -25,55 +24,34 @@ impl PlaneFlow {
         plane: Plane,
         progress: &dyn Progress,
     ) -> Result<Self, SolveError> {
+        let failed = |error: &dyn std::fmt::Display| SolveError::Failed(error.to_string());
+        let body = &solved.bodies[0];
+        let (frame, flow) = (body.frame(), body.flow());
+        let curve = flow.discretization.curve();
+        let outline = Outline::new(&**curve).map_err(|error| failed(&error))?;
         let grid = plane.grid();
         progress.begin("plane", grid.len());
-        let chunks = grid.par_chunks(CHUNK).map(|points| {
-            let values = flow_at(&solved.bodies[0], points);
-            progress.advance(points.len());
-            values
-        });
-        let values: Vec<Vec<Option<FlowAt>>> = chunks.collect::<Result<_, SolveError>>()?;
-        Ok(Self {
-            plane,
-            values: values.concat(),
-        })
-    }
-}
-
-/// The flow at points, `None` in the body and where it is too near to be evaluated.
-fn flow_at(body: &SolvedBody, points: &[Point3<f64>]) -> Result<Vec<Option<FlowAt>>, SolveError> {
-    let failed = |error: &dyn std::fmt::Display| SolveError::Failed(error.to_string());
-    let curve = body.flow().discretization.curve();
-    let outline = Outline::new(&**curve).map_err(|error| failed(&error))?;
-    let mut targets: Vec<(usize, Point3<f64>, f64)> = Vec::new();
-    for (place, &point) in points.iter().enumerate() {
-        let target = body.frame().point_to_body(point);
-        let meridian = Meridian {
-            r: target.x.hypot(target.y),
-            z: target.z,
+        let outside = |point: &Point3<f64>| {
+            let x = frame.point_to_body(*point);
+            let (r, z) = (x.x.hypot(x.y), x.z);
+            (!outline.contains(Meridian { r, z })).then_some(x)
         };
-        if !outline.contains(meridian) {
-            targets.push((place, target, outline.distance(meridian)));
+        let targets: Vec<Option<Point3<f64>>> = grid.par_iter().map(outside).collect();
+        let disturbance = flow.disturbance();
+        let mut values = Vec::with_capacity(grid.len());
+        for targets in targets.chunks(CHUNK) {
+            let fluid: Vec<Point3<f64>> = targets.iter().copied().flatten().collect();
+            let found = disturbance.at(&fluid, TOLERANCE);
+            let mut found = found.map_err(|error| failed(&error))?.into_iter();
+            values.extend(targets.iter().map(|target| {
+                let (x, at) = ((*target)?, found.next()?);
+                Some(FlowAt {
+                    velocity: frame.vector_to_lab(at.velocity + flow.background.at(x.coords)),
+                    pressure: body.viscosity() * at.pressure,
+                })
+            }));
+            progress.advance(targets.len());
         }
-    }
-    let mut values = vec![None; points.len()];
-    loop {
-        let positions: Vec<Point3<f64>> = targets.iter().map(|&(_, target, _)| target).collect();
-        match body.flow().at(&positions, TOLERANCE) {
-            Ok(flow) => {
-                for (&(place, ..), at) in targets.iter().zip(flow) {
-                    values[place] = Some(FlowAt {
-                        velocity: body.frame().vector_to_lab(at.velocity),
-                        pressure: body.viscosity() * at.pressure,
-                    });
-                }
-                return Ok(values);
-            }
-            Err(FlowError::TooNear { index, .. }) => {
-                let nearest = targets[index].2;
-                targets.retain(|&(.., distance)| distance > 1.05 * nearest);
-            }
-            Err(error) => return Err(failed(&error)),
-        }
+        Ok(Self { plane, values })
     }
 }

@@ -1,0 +1,160 @@
+//! Resistance and mobility of shapes, as JSON and as a table.
+
+use std::collections::BTreeMap;
+use std::fmt::{self, Write};
+
+use nalgebra::Matrix6;
+use serde::{Deserialize, Serialize};
+
+use super::table::{number, numbers};
+use super::{Discretization, error_line};
+use crate::body::resistance::{RigidBodyMatrices, ScalarFunctions};
+use crate::case::Case;
+
+/// What `axistokes resistance` reports.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ResistanceReport {
+    /// The viscosity that the matrices are for.
+    pub viscosity: f64,
+    /// One entry per shape of the case, by name.
+    pub shapes: Vec<ShapeReport>,
+}
+
+/// Resistance and mobility of one shape about its origin, in the frame whose z axis is the symmetry axis.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ShapeReport {
+    /// Velocity and angular velocity to the force and torque exerted on the fluid, row by row.
+    pub resistance: [[f64; 6]; 6],
+    /// Force and torque to velocity and angular velocity, row by row.
+    pub mobility: [[f64; 6]; 6],
+    /// Scalar functions of both for viscosity 1: `XA`, `YA`, `YB`, `XC`, `YC` of the resistance and `xa`, `ya`, `yb`, `xc`, `yc` of
+    /// the mobility; see [`ScalarFunctions`].
+    pub functions: BTreeMap<String, f64>,
+    /// The point about which rotation and translation do not couple.
+    pub center_of_reaction: [f64; 3],
+    /// Estimated error of the matrices' entries relative to the largest, lengths in units of half the shape's largest extent.
+    pub error_estimate: f64,
+    /// The shape's name, and how it was discretised.
+    #[serde(flatten)]
+    pub discretization: Discretization,
+}
+
+/// The scalar functions as Kim & Karrila name them, `XA` for $X^A$, in the order of [`ScalarFunctions`].
+const RESISTANCE_FUNCTIONS: [&str; 5] = ["XA", "YA", "YB", "XC", "YC"];
+const MOBILITY_FUNCTIONS: [&str; 5] = ["xa", "ya", "yb", "xc", "yc"];
+
+fn rows(matrix: Matrix6<f64>) -> [[f64; 6]; 6] {
+    matrix.transpose().into()
+}
+
+impl ShapeReport {
+    /// The report of a shape that was computed for viscosity 1.
+    pub fn new(shape: &str, matrices: &RigidBodyMatrices, viscosity: f64) -> Self {
+        let values = |f: ScalarFunctions| [f.xa, f.ya, f.yb, f.xc, f.yc];
+        let of_resistance = values(matrices.resistance.scalar_functions());
+        let of_mobility = values(matrices.mobility.scalar_functions());
+        let functions = (RESISTANCE_FUNCTIONS.into_iter().zip(of_resistance))
+            .chain(MOBILITY_FUNCTIONS.into_iter().zip(of_mobility))
+            .map(|(name, value)| (name.to_owned(), value));
+        Self {
+            resistance: rows(viscosity * matrices.resistance.0),
+            mobility: rows(matrices.mobility.0 / viscosity),
+            functions: functions.collect(),
+            center_of_reaction: matrices.resistance.center_of_reaction().into(),
+            error_estimate: matrices.error_estimate,
+            discretization: Discretization {
+                shape: shape.to_owned(),
+                panels: matrices.resolution.panels.len(),
+                order: matrices.resolution.order,
+                modes: matrices.resolution.modes,
+            },
+        }
+    }
+}
+
+impl ResistanceReport {
+    /// The largest of the shapes' estimated errors.
+    pub fn error_estimate(&self) -> f64 {
+        let errors = self.shapes.iter().map(|shape| shape.error_estimate);
+        errors.fold(0.0, f64::max)
+    }
+
+    /// The name of the first shape with a number that is infinite or not a number: such a report must not be shown.
+    pub fn not_finite(&self) -> Option<String> {
+        let finite = |shape: &&ShapeReport| {
+            let matrices = [shape.resistance, shape.mobility];
+            let mut entries = matrices.iter().flatten().flatten();
+            entries.all(|x| x.is_finite()) && shape.error_estimate.is_finite()
+        };
+        let shape = self.shapes.iter().find(|shape| !finite(shape))?;
+        Some(format!("shapes.{}", shape.discretization.shape))
+    }
+
+    /// One JSON object on one line; every number reads back to the same double.
+    pub fn json(&self) -> serde_json::Result<String> {
+        serde_json::to_string(self)
+    }
+
+    /// The report as aligned text.
+    pub fn table(&self, case: &Case) -> String {
+        let mut text = String::new();
+        // writing to a string does not fail
+        let _ = self.write(&mut text, case);
+        text
+    }
+
+    fn write(&self, out: &mut String, case: &Case) -> fmt::Result {
+        writeln!(
+            out,
+            "{}: viscosity {}, everything in the units of the case",
+            case.path.display(),
+            case.viscosity
+        )?;
+        writeln!(
+            out,
+            "matrices about the origin of the shape, its axis along z; functions for viscosity 1, named as in Kim & Karrila (1991):\n  \
+             T = YB U x d in a translation U across the axis d, and angular velocity = yb F x d under such a force F"
+        )?;
+        self.shapes
+            .iter()
+            .try_for_each(|shape| shape.write(out, case))
+    }
+}
+
+impl ShapeReport {
+    fn write(&self, out: &mut String, case: &Case) -> fmt::Result {
+        let d = &self.discretization;
+        writeln!(
+            out,
+            "\n{}: {} panels of {} nodes, {}",
+            d.shape,
+            d.panels,
+            d.order,
+            error_line(case, self.error_estimate)
+        )?;
+        for (name, value) in &self.functions {
+            writeln!(out, "  {name} {}", number(*value))?;
+        }
+        writeln!(
+            out,
+            "  centre of reaction {}",
+            numbers(&self.center_of_reaction)
+        )?;
+        for (name, matrix) in [
+            (
+                "resistance: force, torque = R (velocity, angular velocity)",
+                &self.resistance,
+            ),
+            (
+                "mobility: velocity, angular velocity = M (force, torque)",
+                &self.mobility,
+            ),
+        ] {
+            writeln!(out, "  {name}")?;
+            for row in matrix {
+                writeln!(out, "  {}", numbers(row))?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -62,8 +62,9 @@
 //! | [`curve`] | generating curves and panels on them |
 //! | [`body`] | matrices, factors, boundary problems and flow of one body, in its own frame and for viscosity 1 |
 //! | [`case`] | case files |
-//! | [`output`] | reports as tables and JSON, plots |
+//! | [`output`] | reports as tables and JSON, plots; on top of [`plane`], pictures and VTK files |
 //! | [`mod@solve`] | from a case to its report: frames and viscosity |
+//! | [`plane`] | the flow in a plane: grids, sections, streamlines |
 //! | [`mod@resistance`] | from a case to the resistance of its shapes |
 //! | [`study`] | the convergence study |
 //! | [`progress`] | how a long computation tells where it is |
@@ -75,6 +76,7 @@ pub mod case;
 pub mod curve;
 pub mod kernel;
 pub mod output;
+pub mod plane;
 pub mod progress;
 pub mod resistance;
 pub mod solve;

@@ -100,6 +100,11 @@ impl SolvedBody {
         &self.frame
     }
 
+    /// The fluid's viscosity.
+    pub fn viscosity(&self) -> f64 {
+        self.viscosity
+    }
+
     /// The flow in the body's own frame and for viscosity 1, with panels and nodes of its generating curve.
     pub fn flow(&self) -> &BodyFlow {
         &self.flow

@@ -357,6 +357,70 @@ fn bodies_and_shapes_that_do_not_fit() {
 }
 
 #[test]
+fn planes_and_output() {
+    let plane = |line: &'static str| format!("[plane]\n{line}\n[probes]");
+    let lines: &[(&str, &[&str])] = &[
+        ("centre = [0, 0, 0]", &["plane.centre", "`center`"]),
+        ("center = [0, 0]", &["plane.center", "three finite numbers"]),
+        (
+            "normal = [0, 0, 0]",
+            &["plane.normal", "any length but zero"],
+        ),
+        (
+            "across = [1, 0, 0]",
+            &["plane.up is missing", "or normal alone"],
+        ),
+        ("up = [1, 0, 0]", &["plane.across is missing"]),
+        (
+            "up = [1, 0, 0]\nacross = [1, 1, 0]",
+            &["plane.up", "orthogonal to each other"],
+        ),
+        (
+            "up = [1, 0, 0]\nnormal = [0, 1, 0]",
+            &["case.toml:16:", "both plane.normal and plane.up"],
+        ),
+        ("size = 0", &["plane.size", "greater than zero"]),
+        ("size = [1, -1]", &["plane.size[1]", "greater than zero"]),
+        ("size = [1, 2, 3]", &["plane.size", "[width, height]"]),
+        ("size = [1, 21]", &["plane.size", "factor of at most 20"]),
+        ("size = \"wide\"", &["plane.size", "a length"]),
+        ("points = 1", &["plane.points", "from 2 to 1001"]),
+        (
+            "points = [100, 1002]",
+            &["plane.points[1]", "from 2 to 1001"],
+        ),
+        ("points = 10.5", &["plane.points", "integer"]),
+        ("frame = \"boddy\"", &["plane.frame", "`body`"]),
+    ];
+    let texts: Vec<String> = lines.iter().map(|(line, _)| plane(line)).collect();
+    let changes: Vec<(&str, &str, &[&str])> = texts
+        .iter()
+        .zip(lines)
+        .map(|(text, (_, words))| ("[probes]", text.as_str(), *words))
+        .collect();
+    assert_all_refused("planes", &changes);
+    let changes: &[(&str, &str, &[&str])] = &[
+        (
+            "[probes]",
+            "[output]\nvtk = 1\n[probes]",
+            &["case.toml:15:", "output.vtk", "true or false"],
+        ),
+        (
+            "[probes]",
+            "[output]\ndirectory = \"case.toml\"\nvtk = true\n[probes]",
+            &["case.toml:14:", "output.directory", "not a folder"],
+        ),
+        // nothing is written, not even a folder, if the case has no answer
+        (
+            "[probes]\npoints = [[0.0, 0.0, 2.0]]",
+            "[output]\ndirectory = \"out\"\nvtk = true\n[probes]\npoints = [[0.0, 0.0, 0.5]]",
+            &["inside the body"],
+        ),
+    ];
+    assert_all_refused("output", changes);
+}
+
+#[test]
 fn what_is_not_built_is_refused_by_name() {
     let changes: &[(&str, &str, &[&str])] = &[
         (
@@ -371,11 +435,6 @@ fn what_is_not_built_is_refused_by_name() {
                 "case.toml:14:",
                 "not supported yet: [background] beside [test]",
             ],
-        ),
-        (
-            "[probes]",
-            "[output]\nvtk = true\n[probes]",
-            &["not supported yet: [output]"],
         ),
         (
             "velocity = [0.0, 0.0, 1.0]",

@@ -48,10 +48,7 @@ fn cases_of_later_issues_are_refused_by_name() {
     for (name, words) in [
         ("eight-sinking", &["more than one body (8 given)"][..]),
         ("held-and-free", &["more than one body (2 given)"]),
-        (
-            "sinking-pair",
-            &["[time]", "[output]", "more than one body (2 given)"],
-        ),
+        ("sinking-pair", &["[time]", "more than one body (2 given)"]),
         ("two-spheres", &["more than one body (2 given)"]),
     ] {
         let error = read(&format!("{name}.toml")).check_supported().unwrap_err();
@@ -179,6 +176,13 @@ step = 0.01
 [output]
 directory = \"out\"
 vtk = true
+[plane]
+center = [0.0, 0.0, 1.0]
+across = [0.0, 1.0, 0.0]
+up = [0.0, 0.0, 2.0]
+size = [4.0, 3.0]
+points = 101
+frame = \"body\"
 ";
 
 #[test]

@@ -55,6 +55,16 @@ fn the_first_case_and_its_answer() {
 }
 
 #[test]
+fn the_plane_and_output_are_read() {
+    let sections = README.split("\n```toml\n[plane]").nth(1).expect("a block");
+    let sections = sections.split_once("```").expect("its end").0;
+    let text = format!("{}[plane]{sections}", block("toml"));
+    let case = axistokes::case::Case::parse(&text, "first.toml").expect("a case");
+    assert_eq!(case.check_supported(), Ok(()));
+    assert!(case.output.is_some_and(|output| output.vtk));
+}
+
+#[test]
 fn the_library_example_is_that_of_the_front_page() {
     let front = include_str!("../src/lib.rs");
     let code: String = front

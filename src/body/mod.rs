@@ -47,3 +47,4 @@ pub mod slip;
 mod storage;
 pub mod stresslet;
 pub mod surface;
+mod traction;

@@ -35,6 +35,7 @@ mod known_flow;
 mod located;
 mod node;
 mod output;
+mod plane;
 mod probes;
 mod section;
 mod shape;
@@ -53,6 +54,7 @@ pub use file::{LARGEST_FILE, check_regular, read_text};
 pub use known_flow::{KnownFlow, Stokeslet};
 pub use located::Located;
 pub use output::OutputOptions;
+pub use plane::{MOST_PLANE_POINTS, Orientation, PlaneFrame, PlaneOptions};
 pub use shape::ShapeSpec;
 pub use slip::Slip;
 pub use solver::{Formulation, Method, SolverOptions};
@@ -75,6 +77,7 @@ const KEYS: &[&str] = &[
     "test",
     "time",
     "output",
+    "plane",
 ];
 
 /// A case: bodies, fluid and question, with every number validated.
@@ -103,6 +106,8 @@ pub struct Case {
     pub time: Option<Located<TimeSpan>>,
     /// What is written besides the answer.
     pub output: Option<Located<OutputOptions>>,
+    /// The plane that pictures and VTK files show.
+    pub plane: PlaneOptions,
 }
 
 impl Case {
@@ -145,6 +150,7 @@ impl Case {
         let output = root.read("output", |node| {
             Ok(node.located(output::read_output(node.clone())?))
         })?;
+        let plane = root.read("plane", |node| plane::read_plane(node.clone()))?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let shapes = match root.optional("shapes") {
             Some(node) => shape::read_shapes(node, folder)?,
@@ -168,6 +174,7 @@ impl Case {
             test,
             time,
             output,
+            plane: plane.unwrap_or_default(),
         };
         match &case.test {
             Some(test) if case.probes.is_empty() => {

@@ -9,9 +9,9 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct OutputOptions {
-    /// Folder of the files, as given.
+    /// Folder of the files, as given: relative to the folder of the case, which it is if not given.
     pub directory: Option<PathBuf>,
-    /// Whether VTK files are written.
+    /// Whether VTK files of the bodies' surfaces and of the plane are written.
     pub vtk: bool,
 }
 

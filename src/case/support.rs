@@ -5,13 +5,8 @@ use super::{Case, CaseError, Formulation, Motion};
 /// Refuses a case that needs what is not built, naming all of it at the line of the first.
 pub(super) fn check(case: &Case) -> Result<(), CaseError> {
     let mut missing: Vec<(usize, String)> = Vec::new();
-    let sections = [
-        ("[time]", case.time.as_ref().map(|s| s.line)),
-        ("[output]", case.output.as_ref().map(|s| s.line)),
-    ];
-    for (name, line) in sections {
-        missing.extend(line.map(|line| (line, name.to_owned())));
-    }
+    let time = case.time.as_ref().map(|time| time.line);
+    missing.extend(time.map(|line| (line, "[time]".to_owned())));
     if let [_, second, ..] = &case.bodies[..] {
         let given = case.bodies.len();
         missing.push((second.line, format!("more than one body ({given} given)")));

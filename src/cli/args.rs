@@ -1,7 +1,8 @@
 //! What can be typed.
 
 use super::streams;
-use clap::{Args, Parser, Subcommand};
+use axistokes::output::picture::Quantity;
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -9,6 +10,8 @@ const EXAMPLES: &str = "\
 Examples:
   axistokes solve sphere-drag.toml            the answer as a table
   axistokes solve sphere-drag.toml --json     the answer as one JSON object
+  axistokes solve sphere-drag.toml --picture flow.svg
+                                              speed and streamlines as a picture, too
   axistokes resistance sphere-drag.toml       resistance and mobility of its shapes
   axistokes --threads 4 converge --quick      the convergence study, small, on four threads
 
@@ -88,6 +91,37 @@ pub struct Solve {
     /// Print one JSON object and nothing else on stdout.
     #[arg(long)]
     pub json: bool,
+    /// Draw the flow in a plane: colours, streamlines, bodies. The plane is [plane] of the case, or one in which much is to be seen.
+    #[arg(long, value_name = "FILE.svg")]
+    pub picture: Option<PathBuf>,
+    /// What the colours of the picture show.
+    #[arg(
+        long,
+        value_name = "QUANTITY",
+        value_enum,
+        default_value_t,
+        requires = "picture"
+    )]
+    pub picture_of: PictureOf,
+}
+
+/// What the colours of a picture show.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum PictureOf {
+    /// The magnitude of the velocity.
+    #[default]
+    Speed,
+    /// The pressure.
+    Pressure,
+}
+
+impl From<PictureOf> for Quantity {
+    fn from(of: PictureOf) -> Self {
+        match of {
+            PictureOf::Speed => Self::Speed,
+            PictureOf::Pressure => Self::Pressure,
+        }
+    }
 }
 
 /// Arguments of `resistance`.

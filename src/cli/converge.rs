@@ -14,7 +14,8 @@ use axistokes::study::{EQUATORIAL, POLAR};
 
 /// Repeats the convergence study: tables on stdout, then plots and CSV in the folder.
 pub fn run(arguments: &Converge) -> Result<(), Failure> {
-    let folder = Folder::open(&arguments.output)?;
+    let folder = Folder::open(&arguments.output)
+        .map_err(|why| Failure::Input(format!("--output {}: {why}", arguments.output.display())))?;
     let orders = arguments.order.map_or(vec![16, 10], |order| vec![order]);
     let plan = if arguments.tiny {
         Plan::tiny(orders)
@@ -47,9 +48,8 @@ pub fn run(arguments: &Converge) -> Result<(), Failure> {
         ("convergence.svg", plot::convergence(&errors)?),
         ("timing.svg", plot::timing(&times)?),
     ];
-    for (name, text) in &files {
-        folder.write(name, text)?;
-    }
+    let files = files.map(|(name, text)| (name.to_owned(), text.into_bytes()));
+    folder.write(&files)?;
     let names = files.map(|(name, _)| name).join(", ");
     streams::print(&format!(
         "\nwritten to {}: {names}\n",

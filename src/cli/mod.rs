@@ -3,6 +3,7 @@
 mod args;
 mod converge;
 mod failure;
+mod files;
 mod folder;
 mod progress_bar;
 mod resistance;

@@ -2,6 +2,7 @@
 
 use super::args::Solve;
 use super::failure::Failure;
+use super::files::Files;
 use super::progress_bar::StderrBar;
 use super::streams;
 use axistokes::case::{Case, CaseError};
@@ -11,19 +12,22 @@ use axistokes::solve::{SolveError, solve};
 /// Solves a case and prints its report; one that misses its tolerance is printed too, then fails.
 pub fn run(arguments: &Solve) -> Result<(), Failure> {
     let case = Case::read(&arguments.case).map_err(SolveError::from)?;
+    let files = Files::asked(arguments, &case)?;
     let bar = StderrBar::new();
-    let report = solve(&case, &bar)?.report;
-    drop(bar);
+    let solved = solve(&case, &bar)?;
     let line = |message: &str| CaseError::new(case.path.display(), None, message).to_string();
+    let report = &solved.report;
     if let Some(name) = report.not_finite() {
         return Err(Failure::Other(line(&format!("{name} is not finite"))));
     }
+    let written = files.write(&case, &solved, &bar)?;
+    drop(bar);
     let text = if arguments.json {
         let json = report.json();
         json.map(|json| json + "\n")
             .map_err(|error| Failure::Other(error.to_string()))?
     } else {
-        table(&case, &report)
+        table(&case, report) + &written
     };
     streams::print(&text)?;
     match missed(&case, report.error_estimate) {

@@ -1,10 +1,12 @@
-//! What an answer looks like: as JSON, as tables for people, as CSV and as plots.
+//! What an answer looks like: as JSON, as tables for people, as CSV, as plots and pictures, and as VTK files.
 
+pub mod picture;
 pub mod plot;
 mod report;
 mod resistance;
 pub mod study;
 mod table;
+pub mod vtk;
 
 pub use report::{BodyReport, Discretization, KnownFlowReport, ProbeReport, Report, Timings};
 pub use resistance::{ResistanceReport, ShapeReport};

@@ -15,6 +15,21 @@ const VIRIDIS: [[f64; 3]; 9] = [
     [253.0, 231.0, 37.0],
 ];
 
+/// ColorBrewer's RdBu turned around: blue, white in the middle, red.
+const BLUE_RED: [[f64; 3]; 11] = [
+    [5.0, 48.0, 97.0],
+    [33.0, 102.0, 172.0],
+    [67.0, 147.0, 195.0],
+    [146.0, 197.0, 222.0],
+    [209.0, 229.0, 240.0],
+    [247.0, 247.0, 247.0],
+    [253.0, 219.0, 199.0],
+    [244.0, 165.0, 130.0],
+    [214.0, 96.0, 77.0],
+    [178.0, 24.0, 43.0],
+    [103.0, 0.0, 31.0],
+];
+
 /// Colours of Okabe and Ito for things without an order: blue, vermilion, green, purple.
 pub const DISTINCT: [RGBColor; 4] = [
     RGBColor(0, 114, 178),
@@ -28,11 +43,21 @@ pub const MISSING: RGBColor = RGBColor(235, 235, 235);
 
 /// Viridis at `t` from 0 (dark) to 1 (light).
 pub fn viridis(t: f64) -> RGBColor {
-    let steps = VIRIDIS.len() - 1;
+    between(&VIRIDIS, t)
+}
+
+/// For values of either sign, `t` from 0 (blue) over 0.5 (white) to 1 (red).
+pub fn blue_red(t: f64) -> RGBColor {
+    between(&BLUE_RED, t)
+}
+
+/// The colour at `t` from 0 to 1 on a scale given at equal steps.
+fn between(scale: &[[f64; 3]], t: f64) -> RGBColor {
+    let steps = scale.len() - 1;
     let t = t.clamp(0.0, 1.0) * steps as f64;
     let k = (t as usize).min(steps - 1);
     let [r, g, b] = std::array::from_fn(|c| {
-        let (from, to) = (VIRIDIS[k][c], VIRIDIS[k + 1][c]);
+        let (from, to) = (scale[k][c], scale[k + 1][c]);
         (from + (to - from) * (t - k as f64)).round() as u8
     });
     RGBColor(r, g, b)

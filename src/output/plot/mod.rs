@@ -1,6 +1,6 @@
 //! Plots of the convergence study as SVG: readable without the fonts of any system, with colours that the colour-blind tell apart.
 
-mod colour;
+pub(super) mod colour;
 mod convergence;
 mod frame;
 mod timing;

@@ -1,0 +1,151 @@
+//! The files that `solve` writes: a picture, VTK files.
+
+use super::args::Solve;
+use super::failure::Failure;
+use super::folder::Folder;
+use axistokes::case::{Case, PlaneFrame};
+use axistokes::nalgebra::Vector3;
+use axistokes::output::picture::{PictureError, Quantity, picture};
+use axistokes::output::vtk::{Surface, VtkError, plane_file};
+use axistokes::plane::{Plane, PlaneFlow};
+use axistokes::progress::Progress;
+use axistokes::solve::Solved;
+use std::ffi::OsStr;
+use std::path::Path;
+
+/// Least azimuths of a surface's mesh, and most.
+const AZIMUTHS: [usize; 2] = [64, 512];
+
+/// The files that are asked for, in folders that can be written to.
+pub struct Files {
+    picture: Option<(Folder, String, Quantity)>,
+    vtk: Option<Folder>,
+}
+
+impl Files {
+    /// What the arguments and `[output]` ask for.
+    pub fn asked(arguments: &Solve, case: &Case) -> Result<Self, Failure> {
+        let quantity = arguments.picture_of.into();
+        let picture = match &arguments.picture {
+            Some(path) => Some(picture_file(path, quantity)?),
+            None => None,
+        };
+        let vtk = match &case.output {
+            Some(output) if output.vtk => {
+                let beside = case.path.parent().unwrap_or(Path::new(""));
+                let folder = beside.join(output.directory.as_deref().unwrap_or(Path::new(".")));
+                let refuse = |why| {
+                    let message = format!("output.directory: {}: {why}", folder.display());
+                    Failure::Input(case.error(output.line, message).to_string())
+                };
+                Some(Folder::open(&folder).map_err(refuse)?)
+            }
+            _ => None,
+        };
+        Ok(Self { picture, vtk })
+    }
+
+    /// Writes them all; returns a line that says so.
+    pub fn write(
+        &self,
+        case: &Case,
+        solved: &Solved,
+        progress: &dyn Progress,
+    ) -> Result<String, Failure> {
+        if self.picture.is_none() && self.vtk.is_none() {
+            return Ok(String::new());
+        }
+        let flow = plane_flow(case, solved, progress)?;
+        let mut written = Vec::new();
+        // Everything is made before anything is written.
+        if let Some((folder, name, quantity)) = &self.picture {
+            let drawn = draw(solved, &flow, *quantity)?;
+            written.push((folder, vec![(name.clone(), drawn.into_bytes())]));
+        }
+        if let Some(folder) = &self.vtk {
+            progress.begin("surface", 0);
+            written.push((folder, vtk_files(case, solved, &flow)?));
+        }
+        let mut names = Vec::new();
+        for (folder, files) in &written {
+            folder.write(files)?;
+            let paths = files.iter().map(|(name, _)| folder.path().join(name));
+            names.extend(paths.map(|path| path.display().to_string()));
+        }
+        Ok(format!("written: {}\n", names.join(", ")))
+    }
+}
+
+/// Folder and name of the picture.
+fn picture_file(path: &Path, quantity: Quantity) -> Result<(Folder, String, Quantity), Failure> {
+    let refuse = |why: &str| Failure::Input(format!("--picture {}: {why}", path.display()));
+    let svg = path.extension().and_then(OsStr::to_str);
+    let name = path.file_name().and_then(OsStr::to_str);
+    let (Some(name), Some("svg")) = (name, svg) else {
+        return Err(refuse("expected the name of a file that ends in .svg"));
+    };
+    if path.is_dir() {
+        return Err(refuse("this is a folder"));
+    }
+    let folder = match path.parent() {
+        Some(parent) if parent != Path::new("") => parent,
+        _ => Path::new("."),
+    };
+    let folder = Folder::open(folder).map_err(|why| refuse(&why))?;
+    Ok((folder, name.to_owned(), quantity))
+}
+
+/// The flow in the plane of the case, seen by whom it says.
+fn plane_flow(case: &Case, solved: &Solved, progress: &dyn Progress) -> Result<PlaneFlow, Failure> {
+    let length = 2.0 * solved.bodies[0].flow().discretization.size();
+    let flow = PlaneFlow::sample(solved, Plane::of_case(case, length), progress)?;
+    Ok(match case.plane.frame {
+        PlaneFrame::Laboratory => flow,
+        PlaneFrame::Body => flow.relative_to(Vector3::from(solved.report.bodies[0].velocity)),
+    })
+}
+
+fn draw(solved: &Solved, flow: &PlaneFlow, quantity: Quantity) -> Result<String, Failure> {
+    let sections = solved
+        .sections(&flow.plane)
+        .map_err(|error| Failure::Other(error.to_string()))?;
+    picture(flow, &sections, quantity).map_err(Failure::from)
+}
+
+fn vtk_files(
+    case: &Case,
+    solved: &Solved,
+    flow: &PlaneFlow,
+) -> Result<Vec<(String, Vec<u8>)>, Failure> {
+    let stem = case
+        .path
+        .file_stem()
+        .and_then(OsStr::to_str)
+        .unwrap_or("case");
+    let mut files = Vec::new();
+    for (number, body) in (1..).zip(&solved.bodies) {
+        let modes = body.flow().layers.modes();
+        let azimuths = (4 * modes).clamp(AZIMUTHS[0], AZIMUTHS[1]);
+        let surface = Surface::of(body, azimuths)
+            .map_err(|error| Failure::Other(error.to_string()))?
+            .file()?;
+        files.push((format!("{stem}-body-{number}.vtu"), surface));
+    }
+    files.push((format!("{stem}-plane.vts"), plane_file(flow)?));
+    Ok(files)
+}
+
+impl From<PictureError> for Failure {
+    fn from(error: PictureError) -> Self {
+        match error {
+            PictureError::NoFluid => Self::Input(error.to_string()),
+            _ => Self::Other(error.to_string()),
+        }
+    }
+}
+
+impl From<VtkError> for Failure {
+    fn from(error: VtkError) -> Self {
+        Self::Other(error.to_string())
+    }
+}

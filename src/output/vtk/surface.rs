@@ -1,0 +1,200 @@
+//! The surface of a body.
+
+use std::f64::consts::PI;
+
+use nalgebra::{Point3, Vector3};
+use panel_quadrature::QuadratureError;
+use vtkio::model::{
+    Attributes, CellType, Cells, DataSet, Piece, UnstructuredGridPiece, VertexNumbers,
+};
+
+use super::{VtkError, bytes, flat, vectors};
+use crate::body::discretization::Discretization;
+use crate::body::surface::SurfaceModes;
+use crate::curve::Topology;
+use crate::solve::SolvedBody;
+
+/// A body's surface as a closed mesh with what acts on it, in the laboratory.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    /// The vertices: the nodes of the generating curve, each turned to the azimuths in equal steps; then the poles, upper and lower.
+    pub points: Vec<Point3<f64>>,
+    /// Outward unit normals of the surface itself.
+    pub normals: Vec<Vector3<f64>>,
+    /// Velocities of the surface, and of the fluid there.
+    pub velocity: Vec<Vector3<f64>>,
+    /// Force per area that the fluid exerts on the body.
+    pub traction: Vec<Vector3<f64>>,
+    /// Vertices of each cell, four or three, counterclockwise seen from outside.
+    pub cells: Vec<Vec<u64>>,
+}
+
+impl Surface {
+    /// The surface of a body, with so many azimuths.
+    ///
+    /// # Errors
+    /// If a quadrature rule is missing.
+    pub fn of(body: &SolvedBody, azimuths: usize) -> Result<Self, QuadratureError> {
+        let flow = body.flow();
+        let nodes = &flow.discretization;
+        let traction = flow.traction()?;
+        let velocity = flow.surface_velocity();
+        let background = flow.background.stress();
+        let mut surface = Self {
+            points: Vec::new(),
+            normals: Vec::new(),
+            velocity: Vec::new(),
+            traction: Vec::new(),
+            cells: Vec::new(),
+        };
+        // Everything in the body's frame, and for viscosity 1.
+        let mut add = |at: [Vector3<f64>; 4]| {
+            let [point, normal, velocity, traction] = at;
+            let lab = |v: Vector3<f64>| body.frame().vector_to_lab(v);
+            let whole = traction + background * normal;
+            surface.points.push(body.frame().point_to_lab(point.into()));
+            surface.normals.push(lab(normal));
+            surface.velocity.push(lab(velocity));
+            surface.traction.push(lab(body.viscosity() * whole));
+        };
+        for (k, node) in nodes.nodes().iter().enumerate() {
+            for l in 0..azimuths {
+                let theta = 2.0 * PI * l as f64 / azimuths as f64;
+                let (sin, cos) = theta.sin_cos();
+                let turned =
+                    |[r, t, z]: [f64; 3]| Vector3::new(r * cos - t * sin, r * sin + t * cos, z);
+                add([
+                    turned([node.r, 0.0, node.z]),
+                    turned([node.normal[0], 0.0, node.normal[1]]),
+                    turned(velocity.at(k, theta)),
+                    turned(traction.at(k, theta)),
+                ]);
+            }
+        }
+        let poles = nodes.curve().topology() == Topology::PoleToPole;
+        if poles {
+            for pole in [Pole::Upper, Pole::Lower] {
+                add([
+                    pole.point(nodes),
+                    pole.normal(),
+                    pole.value(nodes, &velocity)?,
+                    pole.value(nodes, &traction)?,
+                ]);
+            }
+        }
+        surface.cells = cells(nodes.nodes().len(), azimuths, poles);
+        Ok(surface)
+    }
+
+    /// The `.vtu` file.
+    ///
+    /// # Errors
+    /// If the writer fails.
+    pub fn file(&self) -> Result<Vec<u8>, VtkError> {
+        let sizes = self.cells.iter().map(Vec::len);
+        let offsets = sizes.scan(0, |end, size| {
+            *end += size as u64;
+            Some(*end)
+        });
+        let kind = |cell: &Vec<u64>| match cell.len() {
+            3 => CellType::Triangle,
+            _ => CellType::Quad,
+        };
+        let points: Vec<Vector3<f64>> = self.points.iter().map(|x| x.coords).collect();
+        let piece = UnstructuredGridPiece {
+            points: flat(&points).into(),
+            cells: Cells {
+                cell_verts: VertexNumbers::XML {
+                    connectivity: self.cells.concat(),
+                    offsets: offsets.collect(),
+                },
+                types: self.cells.iter().map(kind).collect(),
+            },
+            data: Attributes {
+                point: vec![
+                    vectors("traction", &self.traction),
+                    vectors("velocity", &self.velocity),
+                    vectors("normal", &self.normals),
+                ],
+                cell: Vec::new(),
+            },
+        };
+        let data = DataSet::UnstructuredGrid {
+            meta: None,
+            pieces: vec![Piece::Inline(Box::new(piece))],
+        };
+        bytes("surface of a body", data)
+    }
+}
+
+/// Quadrilaterals between neighbouring rings of vertices, and either triangles around the two poles or rings that close.
+fn cells(rings: usize, azimuths: usize, poles: bool) -> Vec<Vec<u64>> {
+    let vertex = |ring: usize, l: usize| (ring % rings * azimuths + l % azimuths) as u64;
+    let [upper, lower] = [0, 1].map(|pole| (rings * azimuths + pole) as u64);
+    let last = if poles { rings - 1 } else { rings };
+    let around = |l: usize, ring: usize| {
+        vec![
+            vertex(ring, l),
+            vertex(ring + 1, l),
+            vertex(ring + 1, l + 1),
+            vertex(ring, l + 1),
+        ]
+    };
+    let mut cells: Vec<Vec<u64>> = Vec::new();
+    if poles {
+        cells.extend((0..azimuths).map(|l| vec![upper, vertex(0, l), vertex(0, l + 1)]));
+        cells.extend((0..azimuths).map(|l| vec![vertex(last, l), lower, vertex(last, l + 1)]));
+    }
+    cells.extend((0..last).flat_map(|ring| (0..azimuths).map(move |l| around(l, ring))));
+    cells
+}
+
+/// An end of a generating curve on the axis.
+#[derive(Clone, Copy)]
+enum Pole {
+    /// Where the curve begins.
+    Upper,
+    /// Where it ends.
+    Lower,
+}
+
+impl Pole {
+    fn point(self, nodes: &Discretization) -> Vector3<f64> {
+        let panels = nodes.panels().as_slice();
+        let s = match self {
+            Self::Upper => panels[0].start,
+            Self::Lower => panels[panels.len() - 1].end,
+        };
+        Vector3::new(0.0, 0.0, nodes.curve().point(s).z)
+    }
+
+    fn normal(self) -> Vector3<f64> {
+        match self {
+            Self::Upper => Vector3::z(),
+            Self::Lower => -Vector3::z(),
+        }
+    }
+
+    /// A field there, interpolated from the panel: only modes 0 and 1 do not vanish on the axis.
+    fn value(
+        self,
+        nodes: &Discretization,
+        field: &SurfaceModes,
+    ) -> Result<Vector3<f64>, QuadratureError> {
+        let order = nodes.order();
+        let (first, t) = match self {
+            Self::Upper => (0, -1.0),
+            Self::Lower => (nodes.nodes().len() - order, 1.0),
+        };
+        let mut row = vec![0.0; order];
+        nodes.basis().interpolation_row(t, &mut row)?;
+        let at = |n: usize, family: usize, j: usize| -> f64 {
+            if n >= field.modes() {
+                return 0.0;
+            }
+            let values = &field.component(n, family, j)[first..][..order];
+            values.iter().zip(&row).map(|(x, l)| x * l).sum()
+        };
+        Ok(Vector3::new(at(1, 0, 0), at(1, 1, 0), at(0, 0, 2)))
+    }
+}

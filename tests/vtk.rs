@@ -1,0 +1,283 @@
+//! VTK files, read back: closed meshes, areas, volumes, forces, and the flow in a plane.
+
+use std::collections::HashMap;
+use std::f64::consts::PI;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use axistokes::case::Case;
+use axistokes::nalgebra::{Point3, Vector3};
+use axistokes::output::vtk::Surface;
+use axistokes::progress::Silent;
+use axistokes::solve::{Solved, solve};
+use vtkio::Vtk;
+use vtkio::model::{Attribute, Attributes, DataSet, IOBuffer, Piece, VertexNumbers};
+
+const SPHERE: &str = "kind = 'sphere'\nradius = 1.0";
+const SPHEROID: &str = "kind = 'spheroid'\npolar = 1.0\nequatorial = 0.5";
+const TORUS: &str = "kind = 'torus'\nmajor = 1.0\nminor = 0.4";
+
+/// A case of one tilted body that moves and turns in a fluid of viscosity 2.
+fn case(shape: &str, rest: &str) -> String {
+    format!(
+        "viscosity = 2.0\n[shapes.body]\n{shape}\n[[bodies]]\nshape = 'body'\ncenter = [0.3, -0.2, 0.5]\naxis = [1, 2, 2]\n\
+         velocity = [1, 0, -0.5]\nangular_velocity = [0.2, 0.3, 0.1]\n{rest}"
+    )
+}
+
+fn solved(shape: &str, panels: usize) -> Solved {
+    let accuracy = format!("[accuracy]\npanels = {panels}\norder = 10\nmodes = 1");
+    let case = Case::parse(&case(shape, &accuracy), "body.toml").expect("a case");
+    solve(&case, &Silent).expect("an answer")
+}
+
+/// A mesh as read from a file.
+struct Mesh {
+    points: Vec<Vector3<f64>>,
+    cells: Vec<Vec<usize>>,
+    data: HashMap<String, Vec<f64>>,
+}
+
+fn doubles(buffer: &IOBuffer) -> Vec<f64> {
+    assert!(matches!(buffer, IOBuffer::F64(_)), "doubles");
+    buffer.cast_into().expect("numbers")
+}
+
+fn triples(numbers: &[f64]) -> Vec<Vector3<f64>> {
+    let (triples, rest) = numbers.as_chunks::<3>();
+    assert!(rest.is_empty());
+    triples.iter().map(|v| Vector3::from(*v)).collect()
+}
+
+fn point_data(data: &Attributes) -> HashMap<String, Vec<f64>> {
+    let arrays = data.point.iter().map(|attribute| match attribute {
+        Attribute::DataArray(array) => {
+            (array.name.clone(), array.data.cast_into().expect("numbers"))
+        }
+        Attribute::Field { .. } => panic!("a field"),
+    });
+    arrays.collect()
+}
+
+fn read_surface(bytes: &[u8]) -> Mesh {
+    let DataSet::UnstructuredGrid { pieces, .. } = Vtk::parse_xml(bytes).expect("VTK").data else {
+        panic!("no unstructured grid");
+    };
+    let [Piece::Inline(piece)] = &pieces[..] else {
+        panic!("not one piece");
+    };
+    let VertexNumbers::XML {
+        connectivity,
+        offsets,
+    } = &piece.cells.cell_verts
+    else {
+        panic!("not XML");
+    };
+    let mut start = 0;
+    let cells: Vec<Vec<usize>> = offsets
+        .iter()
+        .map(|&end| {
+            let cell = connectivity[start..end as usize].iter();
+            start = end as usize;
+            cell.map(|&vertex| vertex as usize).collect()
+        })
+        .collect();
+    assert_eq!(cells.len(), piece.cells.types.len());
+    Mesh {
+        points: triples(&doubles(&piece.points)),
+        cells,
+        data: point_data(&piece.data),
+    }
+}
+
+fn mesh(solved: &Solved, azimuths: usize) -> Mesh {
+    let surface = Surface::of(&solved.bodies[0], azimuths).expect("a surface");
+    read_surface(&surface.file().expect("a file"))
+}
+
+impl Mesh {
+    fn vectors(&self, name: &str) -> Vec<Vector3<f64>> {
+        let vectors = triples(&self.data[name]);
+        assert_eq!(vectors.len(), self.points.len(), "{name}");
+        vectors
+    }
+
+    /// Vertices less edges plus faces, after a check that every edge has two faces, in opposite directions.
+    fn euler_characteristic(&self) -> i64 {
+        let mut edges: HashMap<(usize, usize), i32> = HashMap::new();
+        for cell in &self.cells {
+            for (&a, &b) in cell.iter().zip(cell.iter().cycle().skip(1)) {
+                let count = edges.entry((a, b)).or_default();
+                *count += 1;
+                assert_eq!(*count, 1, "an edge twice in one direction");
+            }
+        }
+        assert!(
+            edges.keys().all(|&(a, b)| edges.contains_key(&(b, a))),
+            "not closed"
+        );
+        let count = |n: usize| n as i64;
+        count(self.points.len()) - count(edges.len() / 2) + count(self.cells.len())
+    }
+
+    /// Triangles of all cells.
+    fn triangles(&self) -> impl Iterator<Item = [usize; 3]> {
+        self.cells
+            .iter()
+            .flat_map(|cell| (2..cell.len()).map(move |k| [cell[0], cell[k - 1], cell[k]]))
+    }
+
+    fn area_vector(&self, [a, b, c]: [usize; 3]) -> Vector3<f64> {
+        0.5 * (self.points[b] - self.points[a]).cross(&(self.points[c] - self.points[a]))
+    }
+
+    fn area(&self) -> f64 {
+        self.triangles().map(|t| self.area_vector(t).norm()).sum()
+    }
+
+    fn volume(&self) -> f64 {
+        let cone = |t: [usize; 3]| self.area_vector(t).dot(&self.points[t[0]]) / 3.0;
+        self.triangles().map(cone).sum()
+    }
+
+    /// The integral of the traction: force of the fluid on the body.
+    fn force(&self) -> Vector3<f64> {
+        let traction = self.vectors("traction");
+        let on = |t: [usize; 3]| {
+            self.area_vector(t).norm() / 3.0 * t.iter().map(|&v| traction[v]).sum::<Vector3<f64>>()
+        };
+        self.triangles().map(on).sum()
+    }
+}
+
+#[test]
+fn surfaces_are_closed_and_converge_at_second_order() {
+    // The spheroid's area: 2 pi a^2 (1 + c / (a e) arcsin e), e^2 = 1 - a^2 / c^2.
+    let e = 0.75f64.sqrt();
+    let area = 2.0 * PI * 0.25 * (1.0 + 2.0 / e * e.asin());
+    for (shape, euler, area, volume) in [
+        (SPHERE, 2, 4.0 * PI, 4.0 * PI / 3.0),
+        (SPHEROID, 2, area, PI / 3.0),
+        (TORUS, 0, 4.0 * PI * PI * 0.4, 2.0 * PI * PI * 0.16),
+    ] {
+        let mut last: Option<[f64; 3]> = None;
+        for level in [1, 2, 4] {
+            let solved = solved(shape, 4 * level);
+            let mesh = mesh(&solved, 32 * level);
+            assert_eq!(mesh.euler_characteristic(), euler);
+            let poles = usize::from(euler == 2) * 2;
+            assert_eq!(mesh.points.len(), 40 * level * 32 * level + poles);
+            let force = Vector3::from(solved.report.bodies[0].force);
+            let errors = [
+                1.0 - mesh.area() / area,
+                1.0 - mesh.volume() / volume,
+                (mesh.force() + force).norm() / force.norm(),
+            ];
+            assert!(errors.iter().all(|&e| e > 0.0 && e < 2e-2), "{errors:?}");
+            for (coarse, fine) in last.into_iter().flatten().zip(errors) {
+                let ratio = coarse / fine;
+                assert!(
+                    (3.6..4.4).contains(&ratio),
+                    "{shape}: {coarse:e} / {fine:e} = {ratio}"
+                );
+            }
+            last = Some(errors);
+        }
+    }
+}
+
+#[test]
+fn surface_data_of_a_sphere_are_exact() {
+    // Traction -3 mu U / 2a - 3 mu Omega x n, velocity U + a Omega x n.
+    let mesh = mesh(&solved(SPHERE, 4), 16);
+    let (u, omega) = (Vector3::new(1.0, 0.0, -0.5), Vector3::new(0.2, 0.3, 0.1));
+    let center = Vector3::new(0.3, -0.2, 0.5);
+    let [traction, velocity, normals] =
+        ["traction", "velocity", "normal"].map(|name| mesh.vectors(name));
+    for (k, &point) in mesh.points.iter().enumerate() {
+        let n = point - center;
+        assert!((normals[k] - n).norm() < 1e-14);
+        assert!((velocity[k] - u - omega.cross(&n)).norm() < 1e-13);
+        let exact = -2.0 * (1.5 * u + 3.0 * omega.cross(&n));
+        assert!(
+            (traction[k] - exact).norm() < 1e-9,
+            "{k}: {} {exact}",
+            traction[k]
+        );
+    }
+}
+
+/// The velocity and pressure at `x` around a unit sphere with velocity `u`, viscosity 1 (Kim and Karrila 1991, section 3.3.1).
+fn stokes(u: Vector3<f64>, x: Vector3<f64>) -> (Vector3<f64>, f64) {
+    let r = x.norm();
+    let n = x / r;
+    let radial = n * n.dot(&u);
+    let velocity = 0.75 / r * (u + radial) + 0.25 / r.powi(3) * (u - 3.0 * radial);
+    (velocity, 1.5 * n.dot(&u) / (r * r))
+}
+
+#[test]
+fn the_command_writes_surface_and_plane() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("vtk");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    let rest = "[plane]\nnormal = [0, 1, 0]\nsize = [6, 4]\npoints = [31, 21]\n[output]\ndirectory = 'a/b'\nvtk = true\n";
+    let text = case(SPHERE, rest).replace("angular_velocity", "# angular_velocity");
+    fs::write(folder.join("ball.toml"), text).expect("a case");
+    let output = Command::new(env!("CARGO_BIN_EXE_axistokes"))
+        .args(["solve", "ball.toml"])
+        .current_dir(&folder)
+        .stdin(Stdio::null())
+        .output()
+        .expect("the program runs");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    assert!(String::from_utf8_lossy(&output.stdout).contains("\nwritten: "));
+    let mut names: Vec<_> = fs::read_dir(folder.join("a/b"))
+        .expect("the folder")
+        .map(|entry| entry.expect("an entry").file_name())
+        .collect();
+    names.sort();
+    assert_eq!(names, ["ball-body-1.vtu", "ball-plane.vts"]);
+
+    let bytes = fs::read(folder.join("a/b/ball-body-1.vtu")).expect("the surface");
+    assert_eq!(read_surface(&bytes).euler_characteristic(), 2);
+
+    let bytes = fs::read(folder.join("a/b/ball-plane.vts")).expect("the plane");
+    let DataSet::StructuredGrid { extent, pieces, .. } =
+        Vtk::parse_xml(&bytes[..]).expect("VTK").data
+    else {
+        panic!("no structured grid");
+    };
+    assert_eq!(extent.into_ranges(), [0..=30, 0..=20, 0..=0]);
+    let [Piece::Inline(piece)] = &pieces[..] else {
+        panic!("not one piece");
+    };
+    let points = triples(&doubles(&piece.points));
+    assert_eq!(points.len(), 31 * 21);
+    let data = point_data(&piece.data);
+    let velocity = triples(&data["velocity"]);
+    let (u, center) = (Vector3::new(1.0, 0.0, -0.5), Vector3::new(0.3, -0.2, 0.5));
+    for (k, point) in points.iter().enumerate() {
+        assert!((point.y + 0.2).abs() < 1e-15);
+        let x = point - center;
+        let inside = x.norm() < 1.0;
+        let [flag, hidden] = ["inside", "vtkGhostType"].map(|name| data[name][k]);
+        assert_eq!(hidden, 2.0 * flag);
+        if inside {
+            assert_eq!(flag, 1.0, "{point}");
+            assert!(velocity[k].x.is_nan() && data["pressure"][k].is_nan());
+        } else if flag == 0.0 {
+            let (exact, pressure) = stokes(u, x);
+            assert!((velocity[k] - exact).norm() < 1e-5, "{point}");
+            assert!(
+                (data["pressure"][k] - 2.0 * pressure).abs() < 1e-4,
+                "{point}"
+            );
+        } else {
+            assert!(x.norm() < 1.05, "{point} is missing");
+        }
+    }
+    assert_eq!(points[0], Point3::new(-2.7, -0.2, -1.5).coords);
+}

@@ -7,7 +7,6 @@ use nalgebra::{Matrix3, Point3, Unit, Vector3};
 
 use crate::body::body_flow::BodyFlow;
 use crate::body::dirichlet;
-use crate::body::flow::FlowError;
 use crate::body::frame::Frame;
 use crate::body::linear_flow::LinearFlow;
 use crate::body::problem::{self, Answer, Problem, ProblemError, Resolution, evaluation_tolerance};
@@ -399,22 +398,6 @@ impl<'a> Setting<'a> {
                 .into()
         };
         match error {
-            ProblemError::Flow(FlowError::TooNear {
-                index,
-                tolerance,
-                least,
-                ..
-            }) => {
-                // The flow is evaluated more precisely than was asked for.
-                let tolerance = self.case.tolerance().unwrap_or(tolerance);
-                let probe = &self.case.probes[index];
-                let message = format!(
-                    "probes.points: {:?} is too near to the surface for a tolerance of {tolerance:e}: \
-                     expected a distance of about {least:.1e} or more (close evaluation is not supported yet)",
-                    probe.value
-                );
-                self.case.error(probe.line, message).into()
-            }
             ProblemError::Curve(error) => at_shape(&error),
             other => SolveError::Failed(other.to_string()),
         }

@@ -13,7 +13,7 @@ use panel_quadrature::QuadratureError;
 
 use super::discretization::Discretization;
 use super::factors::{ModalFactors, Seconds};
-use super::flow::Flow;
+use super::flow::{Flow, Side};
 use super::layers::{LayerWeights, Layers};
 use super::matrix::ModalMatrices;
 use super::rigid::{RigidMotion, Wrench};
@@ -134,10 +134,12 @@ impl DirichletSolver {
 
     /// The flow of a density, for viscosity 1.
     pub fn flow(&self, density: &SurfaceModes) -> Flow<'_> {
-        Flow::new(
-            &self.discretization,
-            Layers::weighted(density, self.weights),
-        )
+        let side = match self.formulation {
+            Formulation::InteriorDoubleLayer => Side::Interior,
+            _ => Side::Exterior,
+        };
+        let layers = Layers::weighted(density, self.weights);
+        Flow::new(&self.discretization, layers).limit_from(side)
     }
 
     /// Force and torque (about the origin) that the body exerts on the fluid, for viscosity 1: of the single layer alone, since

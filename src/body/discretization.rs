@@ -15,6 +15,7 @@ pub struct Discretization {
     basis: Arc<PanelBasis>,
     nodes: Vec<Node>,
     arc_lengths: Vec<f64>,
+    ends: Vec<[[f64; 2]; 2]>,
 }
 
 /// A point of a generating curve with its geometry.
@@ -35,14 +36,19 @@ pub struct Node {
 impl Node {
     /// The node at parameter `s` with quadrature weight `ds`.
     pub(crate) fn new(curve: &dyn GeneratingCurve, s: f64, ds: f64) -> Self {
-        let (point, tangent) = (curve.point(s), curve.tangent(s));
+        Self::on_ring(curve, s, curve.point(s).r, ds)
+    }
+
+    /// The same with a radius that is known better than from the parameter.
+    pub(crate) fn on_ring(curve: &dyn GeneratingCurve, s: f64, r: f64, ds: f64) -> Self {
+        let tangent = curve.tangent(s);
         let speed = tangent.r.hypot(tangent.z);
         Self {
             s,
-            r: point.r,
-            z: point.z,
+            r,
+            z: curve.point(s).z,
             normal: [-tangent.z / speed, tangent.r / speed],
-            weight: ds * speed * point.r,
+            weight: ds * speed * r,
         }
     }
 }
@@ -67,12 +73,18 @@ impl Discretization {
             let last = &nodes[nodes.len() - order..];
             arc_lengths.push(last.iter().map(|node| node.weight / node.r).sum());
         }
+        let end = |s: f64| {
+            let point = curve.point(s);
+            [point.r, point.z]
+        };
+        let ends = panels.iter().map(|p| [p.start, p.end].map(end)).collect();
         Ok(Self {
             curve,
             panels,
             basis,
             nodes,
             arc_lengths,
+            ends,
         })
     }
 
@@ -113,6 +125,11 @@ impl Discretization {
     /// Arc length of a panel.
     pub fn arc_length(&self, panel: usize) -> f64 {
         self.arc_lengths[panel]
+    }
+
+    /// Radius and height of a panel's ends.
+    pub(crate) fn ends(&self, panel: usize) -> [[f64; 2]; 2] {
+        self.ends[panel]
     }
 
     /// Area of the surface.

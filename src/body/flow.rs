@@ -1,53 +1,48 @@
-//! Velocity and pressure away from the body.
+//! Velocity, pressure, velocity gradient and stress at any point of space.
 //!
-//! The density is resampled finely enough for each target, then summed directly: with the trapezoidal rule in the
-//! azimuth and Gauss–Legendre panels along the curve both converge exponentially in the number of points per distance.
-//! A target that the finest resampling does not resolve is refused.
+//! Points are sorted by what each panel needs: far ones are [summed directly](super::far), for close ones the panels that the sum
+//! does not resolve are done [mode by mode](super::close), at a cost that grows with the logarithm of the distance. On the surface the flow
+//! is the limit from one side, taken [`LIMIT`] body sizes away from it, where it differs from the limit by less than rounding.
 
-use std::f64::consts::PI;
-use std::sync::Arc;
+use std::sync::OnceLock;
 
-use nalgebra::{Point3, Vector3};
-use num_complex::Complex64;
+use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 use panel_quadrature::QuadratureError;
 use rayon::prelude::*;
-use rustfft::{Fft, FftPlanner};
 
-use super::discretization::{Discretization, Node};
+use super::close::{self, CloseFlow};
+use super::densities::Densities;
+use super::discretization::Discretization;
+use super::far::{FarFlow, Separation};
 use super::layers::Layers;
-use super::near::bernstein;
-use super::surface::{SurfaceModes, azimuths};
-use crate::kernel::{FlowAt, FlowGradientAt, SurfacePoint, SurfacePoints};
+use super::near::Sight;
+use super::surface::SurfaceModes;
+use crate::curve::Meridian;
+use crate::kernel::{FlowAt, FlowGradientAt, VelocityPressure, VelocityPressureGradient};
 
-/// The flow of a density on a body, for viscosity 1, in the body's frame.
-#[derive(Clone, Debug)]
+/// The flow of densities on a body, for viscosity 1, in the body's frame.
+#[derive(Debug)]
 pub struct Flow<'a> {
     discretization: &'a Discretization,
     layers: Layers,
-    /// The largest coefficient of a mode.
-    largest: f64,
-    /// Logarithm of each mode's largest coefficient relative to the largest of all.
-    mode_decay: Vec<f64>,
+    side: Side,
+    densities: OnceLock<Densities>,
+    far: OnceLock<FarFlow>,
+    close: OnceLock<CloseFlow>,
+}
+
+/// A side of the surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Outside of the body, where the normal points.
+    Exterior,
+    /// Inside of the body.
+    Interior,
 }
 
 /// Why a flow cannot be evaluated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FlowError {
-    /// A target is too near to the surface.
-    #[error(
-        "the point ({}, {}, {}) is too near to the surface for a tolerance of {tolerance:e}: expected a distance of about {least:.2e} or more",
-        point.x, point.y, point.z
-    )]
-    TooNear {
-        /// Its place among the targets.
-        index: usize,
-        /// The point, in the body's frame.
-        point: Point3<f64>,
-        /// The tolerance it was asked with.
-        tolerance: f64,
-        /// About the least distance that would do there.
-        least: f64,
-    },
     /// A target has a coordinate that is not finite.
     #[error("target {index} has a coordinate that is not finite")]
     NotFinite {
@@ -59,273 +54,284 @@ pub enum FlowError {
     Quadrature(#[from] QuadratureError),
 }
 
-/// Resamplings: number `l` cuts every panel into `2^l` and takes `2^l` times as many azimuths.
-const LEVELS: u32 = 4;
-
-/// Natural logarithm of what the rules' errors exceed the bare powers by: the kernels are large near the surface.
-const MARGIN: f64 = 7.0;
-
-/// What is left of the ellipse's parameter (its logarithm) on a panel that bends towards the target.
-const BENT: f64 = 0.9;
-
-/// Natural logarithm of how far below the density's last coefficients the quadrature's error is worth pushing.
-const BELOW_LEFT_OUT: f64 = 21.0;
+/// Distance from the surface, in body sizes, below which a point is on it; and at which the limits are taken.
+pub const LIMIT: f64 = 1e-14;
 
 impl<'a> Flow<'a> {
-    /// The flow of densities on the nodes of `discretization`.
+    /// The flow of densities on the nodes of `discretization`; on the surface, the limit from outside.
     pub fn new(discretization: &'a Discretization, layers: Layers) -> Self {
-        let amplitudes: Vec<f64> = (0..layers.modes()).map(|n| layers.amplitude(n)).collect();
-        let largest = amplitudes.iter().fold(f64::MIN_POSITIVE, |a, &b| a.max(b));
         Self {
             discretization,
             layers,
-            largest,
-            mode_decay: amplitudes.iter().map(|&a| log_ratio(a, largest)).collect(),
+            side: Side::Exterior,
+            densities: OnceLock::new(),
+            far: OnceLock::new(),
+            close: OnceLock::new(),
         }
     }
 
-    /// Velocity and pressure at every target, with an error of the quadrature below `tolerance` relative to the density, or
-    /// well below what the density's own expansion leaves out, if that is all there is to be had.
+    /// The same flow, with the limit from another side on the surface.
+    pub fn limit_from(self, side: Side) -> Self {
+        Self { side, ..self }
+    }
+
+    /// Velocity and pressure at every target, inside, outside or on the surface, with an error of the quadrature below `tolerance`
+    /// relative to the densities, or well below what their own expansions leave out, if that is all there is to be had.
     ///
     /// # Errors
-    /// [`FlowError::TooNear`] for a target that the finest resampling does not resolve.
+    /// [`FlowError::NotFinite`] for a target that is not a point.
     pub fn at(&self, targets: &[Point3<f64>], tolerance: f64) -> Result<Vec<FlowAt>, FlowError> {
-        self.evaluate(targets, tolerance, SurfacePoints::flow)
+        let found = self.evaluate::<false>(targets, tolerance)?;
+        Ok(found.into_iter().map(FlowAt::from).collect())
     }
 
     /// The same with the velocity gradient, and so the stress.
     ///
     /// # Errors
-    /// As [`at`](Self::at).
+    /// [`FlowError::NotFinite`] for a target that is not a point.
     pub fn gradient_at(
         &self,
         targets: &[Point3<f64>],
         tolerance: f64,
     ) -> Result<Vec<FlowGradientAt>, FlowError> {
-        self.evaluate(targets, tolerance, SurfacePoints::flow_gradient)
+        self.evaluate::<true>(targets, tolerance)
     }
 
-    fn evaluate<T: Copy + Send>(
-        &self,
-        targets: &[Point3<f64>],
-        tolerance: f64,
-        sum: impl Fn(&SurfacePoints, Point3<f64>) -> T + Sync,
-    ) -> Result<Vec<T>, FlowError> {
-        let mut amplitudes = legendre_amplitudes(self.discretization, &self.layers.double)?;
-        let of_single = legendre_amplitudes(self.discretization, &self.layers.single)?;
-        for (amplitude, other) in amplitudes.iter_mut().zip(of_single) {
-            *amplitude = amplitude.max(other);
-        }
-        let panel_decay: Vec<f64> = amplitudes
-            .into_iter()
-            .map(|a| log_ratio(a, self.largest))
-            .collect();
-        let wanted = -tolerance.ln() + MARGIN;
-        let enough = wanted.min(self.digits_of_density(&panel_decay));
-        let mut by_level: Vec<Vec<usize>> = vec![Vec::new(); LEVELS as usize];
-        for (index, point) in targets.iter().enumerate() {
-            if !point.iter().all(|x| x.is_finite()) {
-                return Err(FlowError::NotFinite { index });
-            }
-            let resolving =
-                |digits: f64| (0..LEVELS).find(|&l| self.resolves(l, point, &panel_decay, digits));
-            let level = resolving(wanted).or_else(|| resolving(enough));
-            let Some(level) = level else {
-                return Err(FlowError::TooNear {
-                    index,
-                    point: *point,
-                    tolerance,
-                    least: self.least_distance(tolerance),
-                });
-            };
-            by_level[level as usize].push(index);
-        }
-        let mut flow = vec![None; targets.len()];
-        for (level, indices) in by_level.into_iter().enumerate() {
-            if indices.is_empty() {
-                continue;
-            }
-            let points = self.resample(level as u32)?;
-            let found: Vec<T> = (indices.par_iter())
-                .map(|&i| sum(&points, targets[i]))
-                .collect();
-            for (i, at) in indices.into_iter().zip(found) {
-                flow[i] = Some(at);
-            }
-        }
-        Ok(flow.into_iter().flatten().collect())
-    }
-
-    fn azimuths(&self, level: u32) -> usize {
-        azimuths(self.layers.modes().max(16)) << level
-    }
-
-    /// Digits (natural logarithm) beyond which the density's own expansion leaves nothing to resolve.
-    fn digits_of_density(&self, panel_decay: &[f64]) -> f64 {
-        let order = self.discretization.order();
-        let ends = panel_decay
-            .chunks(order)
-            .map(|c| c[order - 1].max(c[order - 2]));
-        BELOW_LEFT_OUT - ends.fold(f64::NEG_INFINITY, f64::max)
-    }
-
-    /// Whether both rules of a level are good to so many digits (natural logarithm) at a target.
-    fn resolves(&self, level: u32, target: &Point3<f64>, panel_decay: &[f64], digits: f64) -> bool {
-        let order = self.discretization.order();
-        let (r, z) = (target.x.hypot(target.y), target.z);
-        let count = self.azimuths(level) as f64;
-        let parts = 1usize << level;
-        (0..self.discretization.panels().len()).all(|panel| {
-            let around = self.discretization.nodes_of(panel).iter().all(|node| {
-                let h = ((r - node.r).powi(2) + (z - node.z).powi(2)) / (2.0 * r * node.r);
-                let xi = 2.0 * (0.5 * h).sqrt().asinh();
-                // Mode m of the density meets mode count - m of the kernel.
-                (self.mode_decay.iter().enumerate())
-                    .all(|(m, decay)| decay - (count - m as f64) * xi <= -digits)
-            });
-            let whole = self.discretization.panel(panel);
-            let length = self.discretization.arc_length(panel) / parts as f64;
-            let end = |k: usize| {
-                let s = whole.start + whole.length() * k as f64 / parts as f64;
-                let point = self.discretization.curve().point(s);
-                [point.r, point.z]
-            };
-            let decay = &panel_decay[panel * order..][..order];
-            let along = |k: usize| {
-                let log_rho = BENT * bernstein([r, z], [end(k), end(k + 1)], length).ln();
-                // Degree k of the density, k / parts on a part, leaves 2 order - k to the kernel.
-                (decay.iter().enumerate()).all(|(k, decay)| {
-                    let left = (2 * order) as f64 - k as f64 / parts as f64;
-                    decay - left * log_rho <= -digits
-                })
-            };
-            around && (0..parts).all(along)
-        })
-    }
-
-    /// About the distance from the surface at which the finest resampling starts to resolve.
-    fn least_distance(&self, tolerance: f64) -> f64 {
-        let digits = -tolerance.ln() + MARGIN;
-        let finest = LEVELS - 1;
-        let order = self.discretization.order();
-        let far = (digits / (2 * order) as f64).exp();
-        let panels = 0..self.discretization.panels().len();
-        let longest = panels
-            .map(|p| self.discretization.arc_length(p))
-            .fold(0.0, f64::max);
-        let along = 0.25 * (far - 1.0 / far) * longest / f64::from(1u32 << finest);
-        let widest = self
-            .discretization
-            .nodes()
-            .iter()
-            .map(|n| n.r)
-            .fold(0.0, f64::max);
-        let around = widest * digits / self.azimuths(finest) as f64;
-        along.max(around)
-    }
-
-    /// The density on the points of a level.
-    fn resample(&self, level: u32) -> Result<SurfacePoints, QuadratureError> {
+    /// The modes of the traction $(-p I + \nabla u + (\nabla u)^\mathsf{T}) \nu$ on one side of the surface, with the normal
+    /// $\nu$ out of the body.
+    ///
+    /// The traction of a double layer is hypersingular: its finite part is the limit of what integration by parts leaves of it off the
+    /// surface, where only integrable kernels of the density's tangential derivatives stand (`kernel::close`).
+    ///
+    /// # Errors
+    /// If a quadrature rule is missing.
+    pub fn traction(&self, side: Side) -> Result<SurfaceModes, FlowError> {
         let discretization = self.discretization;
-        let basis = discretization.basis();
-        let order = discretization.order();
-        let parts = 1usize << level;
-        let count = self.azimuths(level);
-        let fft: Arc<dyn Fft<f64>> = FftPlanner::new().plan_fft_inverse(count);
-        let mut ring = vec![Complex64::default(); count];
-        let mut components = vec![[0.0; 6]; count];
-        let mut row = vec![0.0; order];
-        let panels = discretization.panels().len();
-        let mut points = SurfacePoints::with_capacity(panels * order * parts * count);
-        let rotation: Vec<(f64, f64)> = (0..count)
-            .map(|l| (2.0 * PI * l as f64 / count as f64).sin_cos())
-            .collect();
-        for panel in 0..panels {
-            let whole = *discretization.panel(panel);
-            for part in 0..parts {
-                for (&x, &w) in basis.nodes().iter().zip(basis.weights()) {
-                    let t = (2 * part + 1) as f64 / parts as f64 - 1.0 + x / parts as f64;
-                    basis.interpolation_row(t, &mut row)?;
-                    let ds = 0.5 * whole.length() * w / parts as f64;
-                    let node = Node::new(&**discretization.curve(), whole.at(t), ds);
-                    for (k, density) in [&self.layers.double, &self.layers.single]
-                        .into_iter()
-                        .enumerate()
-                    {
-                        for j in 0..3 {
-                            spectrum(density, panel * order, &row, j, &mut ring);
-                            fft.process(&mut ring);
-                            for (components, value) in components.iter_mut().zip(&ring) {
-                                components[3 * k + j] = value.re;
-                            }
-                        }
-                    }
-                    let area = node.weight * 2.0 * PI / count as f64;
-                    for (&(sin, cos), components) in rotation.iter().zip(&components) {
-                        let turned = |[radial, azimuthal, axial]: [f64; 3]| {
-                            Vector3::new(
-                                radial * cos - azimuthal * sin,
-                                radial * sin + azimuthal * cos,
-                                axial,
-                            )
-                        };
-                        let [a, b, c, d, e, f] = *components;
-                        let [nu_r, nu_z] = node.normal;
-                        points.push(SurfacePoint {
-                            position: turned([node.r, 0.0, node.z]),
-                            normal: turned([nu_r, 0.0, nu_z]),
-                            double: area * turned([a, b, c]),
-                            single: area * turned([d, e, f]),
-                        });
-                    }
+        let (close, densities) = (self.close()?, self.densities());
+        let nodes = discretization.nodes();
+        let rings: Vec<Vec<f64>> = nodes
+            .par_iter()
+            .map_init(close::Buffers::default, |buffers, node| {
+                let sight = limit(discretization, Sight::on(node), node.normal, side);
+                let panels = 0..discretization.panels().len();
+                let potential = VelocityPressureGradient;
+                close.fields(
+                    discretization,
+                    densities,
+                    &potential,
+                    &sight,
+                    panels,
+                    buffers,
+                )?;
+                Ok(buffers.fields.clone())
+            })
+            .collect::<Result<_, FlowError>>()?;
+        let mut traction = SurfaceModes::zero(densities.modes() - 1, nodes.len());
+        for (k, (node, fields)) in nodes.iter().zip(&rings).enumerate() {
+            for (place, fields) in fields.chunks(FIELDS).enumerate() {
+                let (pressure, gradient) = (fields[3], Matrix3::from_row_slice(&fields[4..]));
+                let normal = Vector3::new(node.normal[0], 0.0, node.normal[1]);
+                let of_mode = (gradient + gradient.transpose()) * normal - pressure * normal;
+                for j in 0..3 {
+                    traction.component_mut(place / 2, place % 2, j)[k] = of_mode[j];
                 }
             }
         }
-        points.pad();
-        Ok(points)
+        Ok(traction)
     }
-}
 
-/// The complex spectrum of component `j`, interpolated with `row` on the panel whose first node is `first`; its inverse
-/// transform has the component as real part.
-fn spectrum(density: &SurfaceModes, first: usize, row: &[f64], j: usize, ring: &mut [Complex64]) {
-    ring.fill(Complex64::default());
-    let interpolate = |n: usize, family: usize| -> f64 {
-        let values = &density.component(n, family, j)[first..][..row.len()];
-        values.iter().zip(row).map(|(x, l)| x * l).sum()
-    };
-    for (n, ring) in ring.iter_mut().enumerate().take(density.modes()) {
-        let (first, second) = (interpolate(n, 0), interpolate(n, 1));
-        // Re((c - i s) e^{i n theta}) = c cos + s sin.
-        *ring = if j == 1 {
-            Complex64::new(-second, -first)
-        } else {
-            Complex64::new(first, -second)
+    fn densities(&self) -> &Densities {
+        self.densities
+            .get_or_init(|| Densities::new(self.discretization, &self.layers))
+    }
+
+    fn close(&self) -> Result<&CloseFlow, QuadratureError> {
+        if let Some(close) = self.close.get() {
+            return Ok(close);
+        }
+        let close = CloseFlow::new(self.discretization.order(), self.layers.modes())?;
+        Ok(self.close.get_or_init(|| close))
+    }
+
+    fn far(&self) -> Result<&FarFlow, QuadratureError> {
+        if let Some(far) = self.far.get() {
+            return Ok(far);
+        }
+        let far = FarFlow::new(self.discretization, self.densities())?;
+        Ok(self.far.get_or_init(|| far))
+    }
+
+    fn evaluate<const GRADIENT: bool>(
+        &self,
+        targets: &[Point3<f64>],
+        tolerance: f64,
+    ) -> Result<Vec<FlowGradientAt>, FlowError> {
+        if let Some(index) = (targets.iter()).position(|x| !x.iter().all(|x| x.is_finite())) {
+            return Err(FlowError::NotFinite { index });
+        }
+        let far = self.far()?;
+        let separation = far.separation(tolerance);
+        let panels = 0..self.discretization.panels().len();
+        let is_far = |target: &Point3<f64>| {
+            let target = meridian(target);
+            (panels.clone()).all(|panel| separation.is_kept(self.discretization, target, panel))
         };
+        let is_far: Vec<bool> = targets.par_iter().map(is_far).collect();
+        let mut found: Vec<FlowGradientAt> = (targets.par_iter().zip(&is_far))
+            .map(|(target, &is_far)| {
+                if is_far {
+                    far.points.sum::<GRADIENT>(0..far.points.len(), *target)
+                } else {
+                    FlowGradientAt::default()
+                }
+            })
+            .collect();
+        let close = self.evaluate_close::<GRADIENT>(targets, &is_far, far, &separation)?;
+        for (index, at) in close {
+            found[index] = at;
+        }
+        Ok(found)
+    }
+
+    /// The targets that are not far, each with its place.
+    fn evaluate_close<const GRADIENT: bool>(
+        &self,
+        targets: &[Point3<f64>],
+        is_far: &[bool],
+        far: &FarFlow,
+        separation: &Separation,
+    ) -> Result<Vec<(usize, FlowGradientAt)>, FlowError> {
+        let mut indices: Vec<usize> = (0..targets.len()).filter(|&i| !is_far[i]).collect();
+        if indices.is_empty() {
+            return Ok(Vec::new());
+        }
+        let close = self.close()?;
+        // Targets on one ring, up to rounding, share all of the work but the last sum over the modes.
+        let grain = LIMIT * self.discretization.size();
+        let ring = |index: usize| {
+            let Meridian { r, z } = meridian(&targets[index]);
+            ((r / grain).round(), (z / grain).round())
+        };
+        let order = |i: usize, j: usize| {
+            let ((r, z), (s, y)) = (ring(i), ring(j));
+            r.total_cmp(&s).then(z.total_cmp(&y)).then(i.cmp(&j))
+        };
+        indices.sort_unstable_by(|&i, &j| order(i, j));
+        let rings: Vec<&[usize]> = indices.chunk_by(|&i, &j| ring(i) == ring(j)).collect();
+        let found = rings
+            .into_par_iter()
+            .map_init(close::Buffers::default, |buffers, ring| {
+                self.ring::<GRADIENT>(targets, ring, far, close, separation, buffers)
+            })
+            .collect::<Result<Vec<_>, FlowError>>()?;
+        Ok(found.into_iter().flatten().collect())
+    }
+
+    /// The targets of one ring.
+    fn ring<const GRADIENT: bool>(
+        &self,
+        targets: &[Point3<f64>],
+        ring: &[usize],
+        far: &FarFlow,
+        close: &CloseFlow,
+        separation: &Separation,
+        buffers: &mut close::Buffers,
+    ) -> Result<Vec<(usize, FlowGradientAt)>, FlowError> {
+        let (discretization, densities) = (self.discretization, self.densities());
+        let point = meridian(&targets[ring[0]]);
+        let sight = self.sight(point);
+        let count = discretization.panels().len();
+        let is_kept = |&panel: &usize| separation.is_kept(discretization, point, panel);
+        let near = (0..count).filter(|panel| !is_kept(panel));
+        if GRADIENT {
+            let potential = VelocityPressureGradient;
+            close.fields(discretization, densities, &potential, &sight, near, buffers)?;
+        } else {
+            let potential = VelocityPressure;
+            close.fields(discretization, densities, &potential, &sight, near, buffers)?;
+        }
+        let fields = &buffers.fields;
+        let mut found = Vec::with_capacity(ring.len());
+        for &index in ring {
+            let mut at = at_azimuth::<GRADIENT>(fields, &targets[index]);
+            for panel in (0..count).filter(is_kept) {
+                at += far.points.sum::<GRADIENT>(far.panel(panel), targets[index]);
+            }
+            found.push((index, at));
+        }
+        Ok(found)
+    }
+
+    /// The point seen from the curve; if it is on the surface, a point on the side of the limit instead.
+    fn sight(&self, point: Meridian) -> Sight {
+        let sight = close::sight(self.discretization, point);
+        let distance = sight.gap.r.hypot(sight.gap.z);
+        if distance >= LIMIT * self.discretization.size() {
+            return sight;
+        }
+        let tangent = self.discretization.curve().tangent(sight.s);
+        let speed = tangent.r.hypot(tangent.z);
+        let normal = [-tangent.z / speed, tangent.r / speed];
+        limit(self.discretization, sight, normal, self.side)
     }
 }
 
-/// Logarithm of an amplitude relative to the largest.
-fn log_ratio(amplitude: f64, largest: f64) -> f64 {
-    (amplitude / largest).max(1e-300).ln()
+/// A point of the surface moved off it, to one side.
+fn limit(discretization: &Discretization, sight: Sight, normal: [f64; 2], side: Side) -> Sight {
+    let distance = LIMIT * discretization.size();
+    let signed = match side {
+        Side::Exterior => distance,
+        Side::Interior => -distance,
+    };
+    let gap = Meridian {
+        r: signed * normal[0],
+        z: signed * normal[1],
+    };
+    Sight { gap, ..sight }
 }
 
-/// Panel after panel, the largest Legendre coefficients of the density along the panel, over all modes and components.
-fn legendre_amplitudes(
-    discretization: &Discretization,
-    density: &SurfaceModes,
-) -> Result<Vec<f64>, QuadratureError> {
-    let order = discretization.order();
-    let mut amplitudes = vec![0.0f64; discretization.nodes().len()];
-    let components =
-        (0..density.modes()).flat_map(|n| (0..6).map(move |k| density.component(n, k / 3, k % 3)));
-    for component in components {
-        for (values, amplitudes) in component.chunks(order).zip(amplitudes.chunks_mut(order)) {
-            let coefficients = discretization.basis().coefficients(values)?;
-            for (amplitude, coefficient) in amplitudes.iter_mut().zip(coefficients) {
-                *amplitude = amplitude.max(coefficient.abs());
-            }
+fn meridian(point: &Point3<f64>) -> Meridian {
+    Meridian {
+        r: point.x.hypot(point.y),
+        z: point.z,
+    }
+}
+
+/// Fields of [`VelocityPressure`] and of [`VelocityPressureGradient`].
+const FLOW_FIELDS: usize = 4;
+const FIELDS: usize = 13;
+
+/// The sum over the modes at the azimuth of a point, in Cartesian components.
+fn at_azimuth<const GRADIENT: bool>(fields: &[f64], point: &Point3<f64>) -> FlowGradientAt {
+    // Components with an odd number of azimuthal indices go with sin in the first family.
+    const IS_SIN: [bool; FIELDS] = {
+        let mut is_sin = [false; FIELDS];
+        is_sin[1] = true;
+        is_sin[5] = true;
+        is_sin[7] = true;
+        is_sin[9] = true;
+        is_sin[11] = true;
+        is_sin
+    };
+    let azimuth = point.y.atan2(point.x);
+    let width = if GRADIENT { FIELDS } else { FLOW_FIELDS };
+    let mut sum = [0.0; FIELDS];
+    for (n, families) in fields.chunks_exact(2 * width).enumerate() {
+        let (sin, cos) = (n as f64 * azimuth).sin_cos();
+        let (first, second) = families.split_at(width);
+        for (i, (first, second)) in first.iter().zip(second).enumerate() {
+            sum[i] += if IS_SIN[i] {
+                first * sin - second * cos
+            } else {
+                first * cos + second * sin
+            };
         }
     }
-    Ok(amplitudes)
+    let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), azimuth);
+    let gradient = Matrix3::from_row_slice(&sum[4..]);
+    FlowGradientAt {
+        velocity: turn * Vector3::new(sum[0], sum[1], sum[2]),
+        pressure: sum[3],
+        gradient: turn * gradient * turn.inverse(),
+    }
 }

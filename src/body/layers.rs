@@ -33,12 +33,4 @@ impl Layers {
     pub fn modes(&self) -> usize {
         self.double.modes().max(self.single.modes())
     }
-
-    /// The largest absolute value of a coefficient of mode `n` of either density.
-    pub fn amplitude(&self, n: usize) -> f64 {
-        [&self.double, &self.single]
-            .into_iter()
-            .filter(|density| n < density.modes())
-            .fold(0.0, |most, density| density.amplitude(n).max(most))
-    }
 }

@@ -15,7 +15,7 @@ use panel_quadrature::QuadratureError;
 use rayon::prelude::*;
 
 use super::discretization::{Discretization, Node};
-use super::near::{NearNodes, NearRules};
+use super::near::{NearNodes, NearRules, Sight};
 use super::storage::Storage;
 use super::surface::SurfaceModes;
 use crate::kernel::{
@@ -221,6 +221,7 @@ impl Buffers {
         let nodes = discretization.nodes();
         let (home, local) = (index / order, index % order);
         let at = &nodes[index];
+        let here = Sight::on(at).point();
         let target = TargetRing {
             r: at.r,
             normal: at.normal,
@@ -229,7 +230,7 @@ impl Buffers {
         self.columns.clear();
         self.near_panels.clear();
         for panel in 0..discretization.panels().len() {
-            if panel != home && rules.is_far(discretization, at, panel) {
+            if panel != home && rules.is_far(discretization, here, panel) {
                 self.columns.extend(panel * order..(panel + 1) * order);
             } else {
                 self.near_panels.push(panel);

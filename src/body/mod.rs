@@ -12,7 +12,7 @@
 //! | [`factors`] | factors of the modal matrices, which belong to the shape |
 //! | [`frame`] | the body's frame and the laboratory's |
 //! | [`layers`] | the layer potentials that make up a flow |
-//! | [`flow`] | velocity and pressure away from the body |
+//! | [`flow`] | velocity, pressure and stress at any point |
 //! | [`linear_flow`] | undisturbed flows |
 //! | [`body_flow`] | the whole flow, as it was solved for |
 //! | [`problem`] | exterior problems, answered with an estimate of the error |
@@ -23,9 +23,12 @@
 //! | [`stresslet`] | the stresslet |
 
 pub mod body_flow;
+mod close;
+mod densities;
 pub mod dirichlet;
 pub mod discretization;
 pub mod factors;
+mod far;
 pub mod flow;
 pub mod frame;
 pub mod layers;

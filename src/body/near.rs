@@ -1,4 +1,4 @@
-//! Which quadrature resolves what a panel does to a target on the curve.
+//! Which quadrature resolves what a panel does to a target, on the curve or off it.
 //!
 //! The modal kernels are singular at the target and at its mirror image $(-r, z)$ across the axis: as functions of the source's
 //! parameter they are analytic only inside an ellipse that keeps clear of both (Bernstein). A Gauss rule of `p` nodes is
@@ -8,14 +8,15 @@
 //! - as it is, where $\varrho$ is large enough;
 //! - with a Kolm–Rokhlin rule, if it is the target's own or one as long next to it on the same smooth piece of the curve, and the
 //!   mirror image is out of the way and the highest mode does not decay too fast;
-//! - otherwise bisected until every part is resolved by a Gauss rule, but for the parts that end at the target, which have a rule for a
-//!   logarithm at that end.
+//! - otherwise cut towards the singularity, in parts nearly four times as long from one to the next, until every part is resolved by a
+//!   Gauss rule, but for the parts that end at the target, which have a rule for a logarithm at that end. Off the curve at a distance `d`
+//!   that makes a number of parts that grows with $\log(1/d)$.
 
 use panel_quadrature::kolm_rokhlin::{KolmRokhlin, Side};
 use panel_quadrature::{GaussLegendre, LogEndpoint, QuadratureError};
 
 use super::discretization::{Discretization, Node};
-use crate::curve::Topology;
+use crate::curve::{Meridian, Topology};
 
 /// Significant digits that a panel's quadrature is chosen for.
 const DIGITS: f64 = 15.5;
@@ -33,8 +34,46 @@ const LOG_ENDPOINT: usize = 24;
 const DECAY_LENGTHS: f64 = 24.0;
 /// Longest panel for a Kolm–Rokhlin rule, in the same lengths and per node of the panel: longer ones are cut near the target.
 const DECAY_LENGTHS_PER_NODE: f64 = 2.5;
-/// Bisections after which a part is taken as it is: it is then of the size of rounding errors.
+/// Where a part is cut whose nearest point to the singularity is its end, as a fraction from there: what is left has
+/// $\varrho + 1/\varrho = 3.5$.
+const CUT: f64 = 0.27;
+/// Cuts after which a part is taken as it is: it is then of the size of rounding errors.
 const DEEPEST: usize = 52;
+
+/// A point seen from a point of the curve close to it.
+///
+/// Where sources are close, their differences from the point come from the gap and the chord, never from coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sight {
+    /// Parameter of the curve point.
+    pub s: f64,
+    /// The curve point, its radius with full relative precision next to the axis.
+    pub foot: Meridian,
+    /// From the curve point to the point; zero on the curve.
+    pub gap: Meridian,
+}
+
+impl Sight {
+    /// A node sees itself.
+    pub fn on(node: &Node) -> Self {
+        Self {
+            s: node.s,
+            foot: Meridian {
+                r: node.r,
+                z: node.z,
+            },
+            gap: Meridian { r: 0.0, z: 0.0 },
+        }
+    }
+
+    /// The point.
+    pub fn point(&self) -> Meridian {
+        Meridian {
+            r: self.foot.r + self.gap.r,
+            z: self.foot.z + self.gap.z,
+        }
+    }
+}
 
 /// Quadrature nodes on one panel for one target.
 #[derive(Debug, Default)]
@@ -48,22 +87,19 @@ pub(crate) struct NearNodes {
     parts: Vec<Part>,
 }
 
-/// A part of a panel, in the panel's reference interval.
+/// A part of a panel, from one offset from the foot (in the curve's parameter) to another.
 #[derive(Clone, Copy, Debug)]
 struct Part {
     start: f64,
     end: f64,
     depth: usize,
-    at_target: bool,
 }
 
-/// Where on a panel the target is.
+/// A place on a panel: in its reference interval, and as an offset from the foot in the curve's parameter.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Position {
-    /// It is this node of the panel.
-    On(usize),
-    /// It is off the panel.
-    Off,
+struct Place {
+    t: f64,
+    ds: f64,
 }
 
 /// The rules and their thresholds.
@@ -82,9 +118,14 @@ pub(crate) struct NearRules {
 }
 
 /// The parameter of the Bernstein ellipse around a part of a curve, from its ends and arc length, that passes through a point.
-pub(crate) fn bernstein(point: [f64; 2], [start, end]: [[f64; 2]; 2], length: f64) -> f64 {
+pub(crate) fn bernstein(point: [f64; 2], ends: [[f64; 2]; 2], length: f64) -> f64 {
     let distance = |from: [f64; 2]| (point[0] - from[0]).hypot(point[1] - from[1]);
-    let sum = (distance(start) + distance(end)) / (0.5 * length);
+    ellipse(ends.map(distance), length)
+}
+
+/// The same from the distances of the point from the two ends.
+fn ellipse(distances: [f64; 2], length: f64) -> f64 {
+    let sum = (distances[0] + distances[1]) / (0.5 * length);
     // rho + 1/rho = sum; on the part itself the sum is 2, less where it bends.
     let half = (0.5 * sum).max(1.0);
     half + (half * half - 1.0).sqrt()
@@ -108,12 +149,12 @@ impl NearRules {
         })
     }
 
-    /// Whether the panel's own nodes resolve its action on a target off it.
-    pub fn is_far(&self, discretization: &Discretization, target: &Node, panel: usize) -> bool {
-        let ends = panel_ends(discretization, panel);
+    /// Whether the panel's own nodes resolve its action on a point off it.
+    pub fn is_far(&self, discretization: &Discretization, point: Meridian, panel: usize) -> bool {
+        let ends = discretization.ends(panel);
         let length = discretization.arc_length(panel);
-        bernstein([target.r, target.z], ends, length) >= self.far
-            && bernstein([-target.r, target.z], ends, length) >= self.far
+        bernstein([point.r, point.z], ends, length) >= self.far
+            && bernstein([-point.r, point.z], ends, length) >= self.far
     }
 
     /// Fills `near` with nodes on `panel` that resolve its action on node `target` of panel `home`.
@@ -125,143 +166,143 @@ impl NearRules {
         panel: usize,
         near: &mut NearNodes,
     ) -> Result<(), QuadratureError> {
-        near.nodes.clear();
-        near.separation.clear();
-        near.interpolation.clear();
+        near.clear();
         let at = &discretization.nodes_of(home)[target];
+        let sight = Sight::on(at);
         let length = discretization.arc_length(panel);
-        let mirror = bernstein([-at.r, at.z], panel_ends(discretization, panel), length);
+        let mirror = bernstein([-at.r, at.z], discretization.ends(panel), length);
+        let half = 0.5 * discretization.panel(panel).length();
         if mirror >= self.far && length <= self.longest_kolm_rokhlin * at.r {
             let order = discretization.order();
             if panel == home {
-                let rule = KolmRokhlin::own(order, target)?;
-                for node in rule.iter() {
-                    near.push_on(discretization, panel, target, node.offset, node.weight)?;
+                let t = discretization.basis().nodes()[target];
+                for node in KolmRokhlin::own(order, target)?.iter() {
+                    let place = Place {
+                        t: t + node.offset,
+                        ds: half * node.offset,
+                    };
+                    near.push(discretization, &sight, panel, place, half * node.weight);
+                    near.interpolate_near(discretization, target, node.offset)?;
                 }
                 return Ok(());
             }
             if let Some(side) = next_door(discretization, home, panel) {
-                let rule = KolmRokhlin::neighbour(order, target, side)?;
-                let half = 0.5 * discretization.panel(panel).length();
-                for node in rule.iter() {
-                    let ds = half * node.offset;
-                    near.push_off(discretization, at, panel, node.node, ds, node.weight)?;
+                for node in KolmRokhlin::neighbour(order, target, side)?.iter() {
+                    let place = Place {
+                        t: node.node,
+                        ds: half * node.offset,
+                    };
+                    near.push(discretization, &sight, panel, place, half * node.weight);
+                    near.interpolate(discretization, place.t)?;
                 }
                 return Ok(());
             }
         }
-        self.bisect(
-            discretization,
-            at,
-            panel,
-            if panel == home {
-                Position::On(target)
-            } else {
-                Position::Off
-            },
-            near,
-        )
+        self.cut(discretization, &sight, panel, near)
     }
 
-    fn bisect(
+    /// Fills `near` with nodes on `panel` that resolve its action on a point off the curve.
+    pub fn fill_off_curve(
         &self,
         discretization: &Discretization,
-        target: &Node,
+        sight: &Sight,
         panel: usize,
-        position: Position,
+        near: &mut NearNodes,
+    ) -> Result<(), QuadratureError> {
+        near.clear();
+        self.cut(discretization, sight, panel, near)
+    }
+
+    fn cut(
+        &self,
+        discretization: &Discretization,
+        sight: &Sight,
+        panel: usize,
         near: &mut NearNodes,
     ) -> Result<(), QuadratureError> {
         let curve = discretization.curve();
-        let whole = discretization.panel(panel);
+        let [first, last] = offsets(discretization, sight, panel);
+        let half = 0.5 * discretization.panel(panel).length();
+        let on_curve = sight.gap.r == 0.0 && sight.gap.z == 0.0;
+        let target = sight.point();
         let mut parts = std::mem::take(&mut near.parts);
-        let part = |start: f64, end: f64, at_target| Part {
+        let part = |start: f64, end: f64| Part {
             start,
             end,
             depth: 0,
-            at_target,
         };
-        // Coordinates relative to the target where it is on the panel, so that parts next to it keep their digits.
-        match position {
-            Position::On(node) => {
-                let t = discretization.basis().nodes()[node];
-                parts.extend([part(0.0, 1.0 - t, true), part(-1.0 - t, 0.0, true)]);
-            }
-            Position::Off => parts.push(part(-1.0, 1.0, false)),
+        if on_curve && first < 0.0 && 0.0 < last {
+            parts.extend([part(0.0, last), part(first, 0.0)]);
+        } else {
+            parts.push(part(first, last));
         }
-        let half = 0.5 * whole.length();
-        while let Some(Part {
-            start,
-            end,
-            depth,
-            at_target,
-        }) = parts.pop()
-        {
-            let place = |t: f64| match position {
-                Position::On(_) => {
-                    let chord = curve.chord(target.s, half * t);
-                    [target.r + chord.r, target.z + chord.z]
-                }
-                Position::Off => {
-                    let point = curve.point(whole.at(t));
-                    [point.r, point.z]
-                }
-            };
-            let (a, m, b) = (place(start), place(0.5 * (start + end)), place(end));
+        // Target minus curve point.
+        let separation = |ds: f64| {
+            let chord = curve.chord(sight.s, ds);
+            [sight.gap.r - chord.r, sight.gap.z - chord.z]
+        };
+        while let Some(Part { start, end, depth }) = parts.pop() {
+            let at_target = on_curve && (start == 0.0 || end == 0.0);
+            let [a, m, b] = [start, 0.5 * (start + end), end].map(separation);
             let step = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]);
             let length = step(a, m) + step(m, b);
-            let mirror = bernstein([-target.r, target.z], [a, b], length);
+            let from_target = |p: [f64; 2]| p[0].hypot(p[1]);
+            // The mirror image is 2 r further away in the radius.
+            let mirrored = |p: [f64; 2]| [p[0] - 2.0 * target.r, p[1]];
+            let mirror = ellipse([a, b].map(|p| from_target(mirrored(p))), length);
+            let direct = ellipse([a, b].map(from_target), length);
             let resolved = if at_target {
                 mirror >= self.log_far && length <= self.longest * target.r
             } else {
-                mirror >= self.gauss_far
-                    && bernstein([target.r, target.z], [a, b], length) >= self.gauss_far
+                mirror.min(direct) >= self.gauss_far
             };
             if resolved || depth >= DEEPEST {
                 let width = end - start;
-                match position {
-                    Position::On(node) if at_target => {
-                        let sign = if start == 0.0 { 1.0 } else { -1.0 };
-                        for (x, w) in self.log_endpoint.iter() {
-                            near.push_on(discretization, panel, node, sign * width * x, width * w)?;
-                        }
+                let mut push = |ds: f64, weight: f64| {
+                    let t = if ds - first < last - ds {
+                        (ds - first) / half - 1.0
+                    } else {
+                        1.0 - (last - ds) / half
+                    };
+                    near.push(discretization, sight, panel, Place { t, ds }, weight);
+                    near.interpolate(discretization, t)
+                };
+                if at_target {
+                    let sign = if start == 0.0 { 1.0 } else { -1.0 };
+                    for (x, w) in self.log_endpoint.iter() {
+                        push(sign * width * x, width * w)?;
                     }
-                    _ => {
-                        for (x, w) in self.gauss.iter() {
-                            // From the nearer end of the part, so that offsets from the target stay accurate.
-                            let t = if x < 0.0 {
-                                start + 0.5 * width * (1.0 + x)
-                            } else {
-                                end - 0.5 * width * (1.0 - x)
-                            };
-                            match position {
-                                Position::On(node) => {
-                                    near.push_on(discretization, panel, node, t, 0.5 * width * w)?
-                                }
-                                Position::Off => {
-                                    let ds =
-                                        parameter_difference(discretization, target, whole.at(t));
-                                    near.push_off(
-                                        discretization,
-                                        target,
-                                        panel,
-                                        t,
-                                        ds,
-                                        0.5 * width * w,
-                                    )?;
-                                }
-                            }
-                        }
+                } else {
+                    for (x, w) in self.gauss.iter() {
+                        // From the end nearer to the foot, so that offsets stay accurate.
+                        let ds = if start.abs() < end.abs() {
+                            start + 0.5 * width * (1.0 + x)
+                        } else {
+                            end - 0.5 * width * (1.0 - x)
+                        };
+                        push(ds, 0.5 * width * w)?;
                     }
                 }
             } else {
-                let middle = 0.5 * (start + end);
-                let half = |start, end| Part {
-                    start,
-                    end,
-                    depth: depth + 1,
-                    at_target: at_target && (start == 0.0 || end == 0.0),
+                let fraction = if at_target || direct <= mirror {
+                    projection(a, b)
+                } else {
+                    projection(mirrored(a), mirrored(b))
                 };
-                parts.extend([half(start, middle), half(middle, end)]);
+                let middle = start + fraction.clamp(CUT, 1.0 - CUT) * (end - start);
+                let depth = depth + 1;
+                parts.extend([
+                    Part {
+                        start,
+                        end: middle,
+                        depth,
+                    },
+                    Part {
+                        start: middle,
+                        end,
+                        depth,
+                    },
+                ]);
             }
         }
         near.parts = parts;
@@ -269,12 +310,10 @@ impl NearRules {
     }
 }
 
-fn panel_ends(discretization: &Discretization, panel: usize) -> [[f64; 2]; 2] {
-    let panel = discretization.panel(panel);
-    [panel.start, panel.end].map(|s| {
-        let point = discretization.curve().point(s);
-        [point.r, point.z]
-    })
+/// Where on the way from `a` to `b` the origin is nearest, as a fraction.
+fn projection(a: [f64; 2], b: [f64; 2]) -> f64 {
+    let d = [b[0] - a[0], b[1] - a[1]];
+    -(a[0] * d[0] + a[1] * d[1]) / (d[0] * d[0] + d[1] * d[1])
 }
 
 /// On which side of the source panel the target's panel `home` lies, if it is as long and next to it on the same smooth piece.
@@ -291,84 +330,75 @@ fn next_door(discretization: &Discretization, home: usize, panel: usize) -> Opti
     None
 }
 
-/// The parameter difference from `target` to `s`, across the seam of a closed curve if that is shorter.
-fn parameter_difference(discretization: &Discretization, target: &Node, s: f64) -> f64 {
-    let difference = s - target.s;
-    if discretization.panels().topology() == Topology::PoleToPole {
-        return difference;
-    }
+/// The offsets of a panel's ends from the foot in the curve's parameter, across the seam of a closed curve if that is shorter.
+fn offsets(discretization: &Discretization, sight: &Sight, panel: usize) -> [f64; 2] {
+    let panel = discretization.panel(panel);
     let panels = discretization.panels().as_slice();
     let period = panels[panels.len() - 1].end - panels[0].start;
-    if difference > 0.5 * period {
-        difference - period
-    } else if difference < -0.5 * period {
-        difference + period
+    let middle = 0.5 * (panel.start + panel.end) - sight.s;
+    let shift = if discretization.panels().topology() == Topology::PoleToPole {
+        0.0
+    } else if middle > 0.5 * period {
+        -period
+    } else if middle < -0.5 * period {
+        period
     } else {
-        difference
-    }
+        0.0
+    };
+    [panel.start, panel.end].map(|s| (s + shift) - sight.s)
 }
 
 impl NearNodes {
-    /// A node at `offset` (in the reference interval) from the panel's node `target`.
-    fn push_on(
-        &mut self,
-        discretization: &Discretization,
-        panel: usize,
-        target: usize,
-        offset: f64,
-        weight: f64,
-    ) -> Result<(), QuadratureError> {
-        let half = 0.5 * discretization.panel(panel).length();
-        let at = &discretization.nodes_of(panel)[target];
-        let ds = half * offset;
-        let order = discretization.order();
-        self.push(discretization, at, at.s + ds, ds, half * weight);
-        let first = self.interpolation.len();
-        self.interpolation.resize(first + order, 0.0);
-        discretization.basis().interpolation_row_near(
-            target,
-            offset,
-            &mut self.interpolation[first..],
-        )
+    fn clear(&mut self) {
+        self.nodes.clear();
+        self.separation.clear();
+        self.interpolation.clear();
     }
 
-    /// A node at `t` of a panel that the target is not on, `ds` from the target in the curve's parameter.
-    fn push_off(
-        &mut self,
-        discretization: &Discretization,
-        target: &Node,
-        panel: usize,
-        t: f64,
-        ds: f64,
-        weight: f64,
-    ) -> Result<(), QuadratureError> {
-        let source = discretization.panel(panel);
-        self.push(
-            discretization,
-            target,
-            source.at(t),
-            ds,
-            0.5 * source.length() * weight,
-        );
-        let first = self.interpolation.len();
-        self.interpolation
-            .resize(first + discretization.order(), 0.0);
-        discretization
-            .basis()
-            .interpolation_row(t, &mut self.interpolation[first..])
-    }
-
+    /// A node of the panel.
     fn push(
         &mut self,
         discretization: &Discretization,
-        target: &Node,
-        s: f64,
-        ds: f64,
+        sight: &Sight,
+        panel: usize,
+        place: Place,
         weight: f64,
     ) {
         let curve = discretization.curve();
-        let chord = curve.chord(target.s, ds);
-        self.nodes.push(Node::new(&**curve, s, weight));
-        self.separation.push([-chord.r, -chord.z]);
+        let chord = curve.chord(sight.s, place.ds);
+        let s = discretization.panel(panel).at(place.t);
+        let node = Node::on_ring(&**curve, s, sight.foot.r + chord.r, weight);
+        self.nodes.push(node);
+        self.separation
+            .push([sight.gap.r - chord.r, sight.gap.z - chord.z]);
+    }
+
+    /// The panel's interpolation to `t` of its reference interval.
+    fn interpolate(
+        &mut self,
+        discretization: &Discretization,
+        t: f64,
+    ) -> Result<(), QuadratureError> {
+        let row = self.next_row(discretization.order());
+        discretization.basis().interpolation_row(t, row)
+    }
+
+    /// The panel's interpolation to `offset` from its node `target`.
+    fn interpolate_near(
+        &mut self,
+        discretization: &Discretization,
+        target: usize,
+        offset: f64,
+    ) -> Result<(), QuadratureError> {
+        let row = self.next_row(discretization.order());
+        discretization
+            .basis()
+            .interpolation_row_near(target, offset, row)
+    }
+
+    fn next_row(&mut self, order: usize) -> &mut [f64] {
+        let first = self.interpolation.len();
+        self.interpolation.resize(first + order, 0.0);
+        &mut self.interpolation[first..]
     }
 }

@@ -1,6 +1,6 @@
 //! What `benches/` reach the kernels by; no part of the library's interface.
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Matrix3, Point3, Vector3};
 use rayon::prelude::*;
 
 use super::{
@@ -73,6 +73,8 @@ impl DirectSum {
                 normal: Vector3::z(),
                 double: Vector3::x(),
                 single: Vector3::x(),
+                moved: Vector3::x(),
+                curl: Matrix3::zeros(),
             });
         }
         points.pad();
@@ -81,6 +83,9 @@ impl DirectSum {
 
     /// The flow at targets.
     pub fn flow(&self, targets: &[Point3<f64>]) -> Vec<FlowAt> {
-        targets.par_iter().map(|&x| self.0.flow(x)).collect()
+        targets
+            .par_iter()
+            .map(|&x| self.0.sum::<false>(0..self.0.len(), x).into())
+            .collect()
     }
 }

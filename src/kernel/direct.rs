@@ -1,6 +1,7 @@
 //! Direct sums of Stokeslets and stresslets over points in space.
 
 use std::f64::consts::PI;
+use std::ops::{AddAssign, Range};
 
 use nalgebra::{Matrix3, Point3, Vector3};
 use pulp::{Arch, Simd, WithSimd};
@@ -15,6 +16,9 @@ pub(crate) struct SurfacePoints {
     /// Densities times the point's share of the area.
     double: [Vec<f64>; 3],
     single: [Vec<f64>; 3],
+    moved: [Vec<f64>; 3],
+    /// Column after column.
+    curl: [Vec<f64>; 9],
 }
 
 /// Velocity and pressure at a point, for viscosity 1.
@@ -27,7 +31,7 @@ pub struct FlowAt {
 }
 
 /// Velocity, pressure and velocity gradient at a point, for viscosity 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FlowGradientAt {
     /// Velocity.
     pub velocity: Vector3<f64>,
@@ -41,6 +45,14 @@ impl FlowGradientAt {
     /// The stress $-p I + \nabla u + (\nabla u)^\mathsf{T}$.
     pub fn stress(&self) -> Matrix3<f64> {
         self.gradient + self.gradient.transpose() - Matrix3::from_diagonal_element(self.pressure)
+    }
+}
+
+impl AddAssign for FlowGradientAt {
+    fn add_assign(&mut self, other: Self) {
+        self.velocity += other.velocity;
+        self.pressure += other.pressure;
+        self.gradient += other.gradient;
     }
 }
 
@@ -61,16 +73,24 @@ pub(crate) struct SurfacePoint {
     /// Densities times the point's share of the area.
     pub double: Vector3<f64>,
     pub single: Vector3<f64>,
+    /// $\varrho + 2\tau$ of the [close](super::close) kernels.
+    pub moved: Vector3<f64>,
+    /// $(\nu\times\nabla)_m \sigma_i$ in row $m$ and column $i$.
+    pub curl: Matrix3<f64>,
 }
 
 impl SurfacePoints {
     pub fn with_capacity(count: usize) -> Self {
-        let buffers = || std::array::from_fn(|_| Vec::with_capacity(count + PADDING));
+        fn buffers<const N: usize>(count: usize) -> [Vec<f64>; N] {
+            std::array::from_fn(|_| Vec::with_capacity(count + PADDING))
+        }
         Self {
-            position: buffers(),
-            normal: buffers(),
-            double: buffers(),
-            single: buffers(),
+            position: buffers(count),
+            normal: buffers(count),
+            double: buffers(count),
+            single: buffers(count),
+            moved: buffers(count),
+            curl: buffers(count),
         }
     }
 
@@ -80,6 +100,10 @@ impl SurfacePoints {
             self.normal[k].push(point.normal[k]);
             self.double[k].push(point.double[k]);
             self.single[k].push(point.single[k]);
+            self.moved[k].push(point.moved[k]);
+        }
+        for (buffer, value) in self.curl.iter_mut().zip(&point.curl) {
+            buffer.push(*value);
         }
     }
 
@@ -91,24 +115,27 @@ impl SurfacePoints {
                 normal: Vector3::zeros(),
                 double: Vector3::zeros(),
                 single: Vector3::zeros(),
+                moved: Vector3::zeros(),
+                curl: Matrix3::zeros(),
             });
         }
     }
 
-    /// Velocity and pressure of both layers at a point, summed in the order of the points.
-    pub fn flow(&self, target: Point3<f64>) -> FlowAt {
-        Arch::new()
-            .dispatch(Sum::<false> {
-                points: self,
-                target,
-            })
-            .into()
+    /// Points, those that pad registers included.
+    pub fn len(&self) -> usize {
+        self.position[0].len()
     }
 
-    /// The same with the velocity gradient.
-    pub fn flow_gradient(&self, target: Point3<f64>) -> FlowGradientAt {
-        Arch::new().dispatch(Sum::<true> {
+    /// Velocity and pressure of both layers at a target, and the velocity gradient if asked for (else zero), summed in the order of
+    /// the points; `range` begins and ends where the points were padded.
+    pub fn sum<const GRADIENT: bool>(
+        &self,
+        range: Range<usize>,
+        target: Point3<f64>,
+    ) -> FlowGradientAt {
+        Arch::new().dispatch(Sum::<GRADIENT> {
             points: self,
+            range,
             target,
         })
     }
@@ -116,21 +143,29 @@ impl SurfacePoints {
 
 struct Sum<'a, const GRADIENT: bool> {
     points: &'a SurfacePoints,
+    range: Range<usize>,
     target: Point3<f64>,
 }
 
-impl<const GRADIENT: bool> WithSimd for Sum<'_, GRADIENT> {
+impl<'a, const GRADIENT: bool> WithSimd for Sum<'a, GRADIENT> {
     type Output = FlowGradientAt;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> FlowGradientAt {
-        let Self { points, target } = self;
+        let Self {
+            points,
+            range,
+            target,
+        } = self;
         let splat = |x| Lanes::splat(simd, x);
         let target = [splat(target.x), splat(target.y), splat(target.z)];
-        let [x, y, z] = points.position.each_ref().map(|b| S::as_simd_f64s(b).0);
-        let [nx, ny, nz] = points.normal.each_ref().map(|b| S::as_simd_f64s(b).0);
-        let [fx, fy, fz] = points.double.each_ref().map(|b| S::as_simd_f64s(b).0);
-        let [gx, gy, gz] = points.single.each_ref().map(|b| S::as_simd_f64s(b).0);
+        let registers = |buffer: &'a Vec<f64>| S::as_simd_f64s(&buffer[range.clone()]).0;
+        let [x, y, z] = points.position.each_ref().map(registers);
+        let [nx, ny, nz] = points.normal.each_ref().map(registers);
+        let [fx, fy, fz] = points.double.each_ref().map(registers);
+        let [gx, gy, gz] = points.single.each_ref().map(registers);
+        let [mx, my, mz] = points.moved.each_ref().map(registers);
+        let curls = points.curl.each_ref().map(registers);
         let mut velocity = [splat(0.0); 3];
         let mut pressure = splat(0.0);
         let mut gradient = [[splat(0.0); 3]; 3];
@@ -149,27 +184,36 @@ impl<const GRADIENT: bool> WithSimd for Sum<'_, GRADIENT> {
             let inv2 = one / dot(&d, &d);
             let inv = inv2.sqrt();
             let inv3 = inv * inv2;
-            let (df, dg, dn, nf) = (dot(&d, &f), dot(&d, &g), dot(&d, &n), dot(&n, &f));
+            let m = [Lanes(simd, mx[i]), Lanes(simd, my[i]), Lanes(simd, mz[i])];
+            let (df, dg, dn) = (dot(&d, &f), dot(&d, &g), dot(&d, &n));
             // u = (6 (d.f)(d.n)/|d|^5 + (d.g)/|d|^3) d + g/|d|.
-            let both = 6.0 * df * dn * inv2;
-            let along_d = inv3 * (both + dg);
+            let along_d = inv3 * (6.0 * df * dn * inv2 + dg);
             for k in 0..3 {
                 velocity[k] = velocity[k] + along_d.mul_add(d[k], inv * g[k]);
             }
-            // p = 4 (-n.f + 3 (d.f)(d.n)/|d|^2)/|d|^3 + 2 (d.g)/|d|^3.
-            pressure = inv3.mul_add(2.0 * (both + dg) - 4.0 * nf, pressure);
+            let along_m = inv3 * dot(&d, &m);
+            pressure = pressure + (along_m + along_m);
             if GRADIENT {
-                // du_i/dx_j = d_i w_j + (along_d) delta_ij - g_i d_j/|d|^3.
-                let inv5 = 6.0 * inv3 * inv2;
-                let (along_f, along_n) = (dn * inv5, df * inv5);
-                let radial = -(inv3 * inv2) * (5.0 * both + 3.0 * dg);
-                for j in 0..3 {
-                    let w = radial * d[j] + inv3 * g[j] + along_f * f[j] + along_n * n[j];
-                    let away = inv3 * d[j];
-                    for k in 0..3 {
-                        gradient[k][j] = d[k].mul_add(w, gradient[k][j] - away * g[k]);
+                // du_k/dx_j = d_k w_j + (d.m) delta_kj/|d|^3 - g_k d_j/|d|^3 - 2 (d x curl_k)_j/|d|^3.
+                let radial = -3.0 * along_m * inv2;
+                let away = [inv3 * d[0], inv3 * d[1], inv3 * d[2]];
+                for k in 0..3 {
+                    let [cx, cy, cz] = [
+                        Lanes(simd, curls[3 * k][i]),
+                        Lanes(simd, curls[3 * k + 1][i]),
+                        Lanes(simd, curls[3 * k + 2][i]),
+                    ];
+                    let cross = [
+                        away[1] * cz - away[2] * cy,
+                        away[2] * cx - away[0] * cz,
+                        away[0] * cy - away[1] * cx,
+                    ];
+                    for j in 0..3 {
+                        let w = radial.mul_add(d[j], inv3 * m[j]);
+                        let rest = away[j] * g[k] + (cross[j] + cross[j]);
+                        gradient[k][j] = d[k].mul_add(w, gradient[k][j] - rest);
                     }
-                    gradient[j][j] = gradient[j][j] + along_d;
+                    gradient[k][k] = gradient[k][k] + along_m;
                 }
             }
         }

@@ -40,7 +40,7 @@ impl fmt::Debug for Fourier {
 
 /// Buffers of one pair.
 #[derive(Debug, Default)]
-pub(super) struct Workspace {
+pub(crate) struct Workspace {
     /// Entry after entry, the samples in $[0, \pi]$, padded.
     samples: Vec<f64>,
     sequence: Vec<Complex64>,

@@ -24,6 +24,7 @@
 
 #[doc(hidden)]
 pub mod bench;
+mod close;
 mod combined;
 mod direct;
 mod double_layer;
@@ -31,6 +32,7 @@ mod fourier;
 mod modes;
 mod moments;
 mod pair;
+mod potential;
 mod pressure;
 mod rings;
 mod single_layer;
@@ -39,11 +41,13 @@ mod stokeslet;
 mod tests;
 mod traction;
 
+pub(crate) use close::{DENSITIES, Potential, VelocityPressure, VelocityPressureGradient};
 pub(crate) use combined::CombinedField;
 pub use direct::{FlowAt, FlowGradientAt};
 pub(crate) use direct::{SurfacePoint, SurfacePoints};
 pub(crate) use double_layer::DoubleLayer;
 pub(crate) use modes::{Kernel, Modes, SourceRings, TargetRing, Workspace};
+pub(crate) use potential::RingDensities;
 pub(crate) use pressure::{DoubleLayerPressure, SingleLayerPressure};
 pub use rings::{Ring, RingKernel};
 pub(crate) use single_layer::SingleLayer;

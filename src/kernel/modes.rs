@@ -2,7 +2,7 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-use super::fourier::Fourier;
+use super::fourier::{self, Fourier};
 use super::moments::{MomentSeries, Moments};
 use super::pair::{Pair, Separation};
 use crate::special::lanes::{Lanes, padded};
@@ -110,11 +110,20 @@ pub(crate) struct Workspace {
     pub stride: usize,
     /// Which source a column of `block` belongs to.
     pub order: Vec<usize>,
-    /// The registers' inputs: r', a, b, normal, h, and the ladder's start.
+    /// How many columns are near: the first ones.
+    pub(super) near: usize,
+    /// The registers' inputs: r', a, b, normal, and the ladder's start.
     packed: [Vec<f64>; 7],
+    pub(super) ladder: LadderSpace,
+    pub(super) fourier: fourier::Workspace,
+    pub(super) sums: Vec<f64>,
+}
+
+/// Room for the toroidal functions of one register.
+#[derive(Debug, Default)]
+pub(super) struct LadderSpace {
     q: Vec<f64>,
     d: Vec<f64>,
-    pub(super) fourier: super::fourier::Workspace,
 }
 
 impl Modes {
@@ -150,7 +159,7 @@ impl Modes {
             workspace.stride = 0;
             return;
         }
-        let near = workspace.arrange(target, sources, self.far);
+        self.arrange(target, sources, workspace);
         workspace.stride = padded(sources.len());
         workspace
             .block
@@ -160,9 +169,39 @@ impl Modes {
             kernel,
             target,
             sources,
-            near,
             workspace,
         });
+    }
+
+    /// Puts the near pairs first in `workspace.order` and packs what their registers need.
+    pub fn arrange(&self, target: TargetRing, sources: &SourceRings, workspace: &mut Workspace) {
+        workspace.near = workspace.arrange(target, sources, self.far);
+    }
+
+    /// The FFT for the pairs that are not near.
+    pub(super) fn fourier(&self) -> &Fourier {
+        &self.fourier
+    }
+
+    /// The toroidal functions of a register, for one degree beyond the last mode, and the factor they are yet to be multiplied by.
+    #[inline(always)]
+    pub(super) fn ladder<'w, S: Simd>(
+        &self,
+        simd: S,
+        pair: &Pair<S>,
+        q0: Lanes<S>,
+        d0: Lanes<S>,
+        space: &'w mut LadderSpace,
+    ) -> (&'w [S::f64s], &'w [S::f64s], Lanes<S>) {
+        let room = (self.n_max + 2) * S::F64_LANES;
+        space.q.resize(room, 0.0);
+        space.d.resize(room, 0.0);
+        let (q, d) = (
+            S::as_mut_simd_f64s(&mut space.q).0,
+            S::as_mut_simd_f64s(&mut space.d).0,
+        );
+        let scale = self.ladder.fill(simd, pair.h, q0, d0, q, d);
+        (q, d, scale)
     }
 }
 
@@ -200,6 +239,27 @@ impl Workspace {
         }
         near
     }
+
+    /// Register number `index` of the near pairs, and where its ladder starts.
+    #[inline(always)]
+    pub(super) fn pair<S: Simd>(
+        &self,
+        simd: S,
+        index: usize,
+        r: Lanes<S>,
+        [mu_r, mu_z]: [Lanes<S>; 2],
+    ) -> (Pair<S>, Lanes<S>, Lanes<S>) {
+        let [rp, a, b, nu_r, nu_z, q0, d0] = [
+            Lanes::load(simd, &self.packed[0], index),
+            Lanes::load(simd, &self.packed[1], index),
+            Lanes::load(simd, &self.packed[2], index),
+            Lanes::load(simd, &self.packed[3], index),
+            Lanes::load(simd, &self.packed[4], index),
+            Lanes::load(simd, &self.packed[5], index),
+            Lanes::load(simd, &self.packed[6], index),
+        ];
+        (Pair::new(r, rp, a, b, nu_r, nu_z, mu_r, mu_z), q0, d0)
+    }
 }
 
 struct Evaluate<'a, const K: usize, F: Kernel<K>> {
@@ -207,7 +267,6 @@ struct Evaluate<'a, const K: usize, F: Kernel<K>> {
     kernel: &'a F,
     target: TargetRing,
     sources: &'a SourceRings,
-    near: usize,
     workspace: &'a mut Workspace,
 }
 
@@ -221,55 +280,32 @@ impl<const K: usize, F: Kernel<K>> WithSimd for Evaluate<'_, K, F> {
             kernel,
             target,
             sources,
-            near,
             workspace,
         } = self;
-        let Workspace {
-            block,
-            stride,
-            order,
-            packed,
-            q,
-            d,
-            fourier,
-        } = workspace;
         let splat = |x| Lanes::splat(simd, x);
-        let (r, mu_r, mu_z) = (
-            splat(target.r),
-            splat(target.normal[0]),
-            splat(target.normal[1]),
-        );
-        let lanes = S::F64_LANES;
-        q.resize((modes.n_max + 2) * lanes, 0.0);
-        d.resize((modes.n_max + 2) * lanes, 0.0);
-        let (q, d) = (S::as_mut_simd_f64s(q).0, S::as_mut_simd_f64s(d).0);
-        for register in 0..near.div_ceil(lanes) {
-            let [rp, a, b, nu_r, nu_z, q0, d0] = [
-                Lanes::load(simd, &packed[0], register),
-                Lanes::load(simd, &packed[1], register),
-                Lanes::load(simd, &packed[2], register),
-                Lanes::load(simd, &packed[3], register),
-                Lanes::load(simd, &packed[4], register),
-                Lanes::load(simd, &packed[5], register),
-                Lanes::load(simd, &packed[6], register),
-            ];
-            let pair = Pair::new(r, rp, a, b, nu_r, nu_z, mu_r, mu_z);
-            let scale = modes.ladder.fill(simd, pair.h, q0, d0, q, d);
+        let r = splat(target.r);
+        let [mu_r, mu_z] = target.normal.map(splat);
+        let mut block = std::mem::take(&mut workspace.block);
+        let stride = workspace.stride;
+        let near = workspace.near;
+        for register in 0..near.div_ceil(S::F64_LANES) {
+            let (pair, q0, d0) = workspace.pair(simd, register, r, [mu_r, mu_z]);
+            let (q, d, scale) = modes.ladder(simd, &pair, q0, d0, &mut workspace.ladder);
             let mut series = MomentSeries::new(&pair, q, d, scale);
             for n in 0..=modes.n_max {
                 let entries = kernel.mode(&pair, &series.next(n));
                 for (k, entry) in entries.iter().enumerate() {
-                    entry.store(&mut block[(n * K + k) * *stride..][..*stride], register);
+                    entry.store(&mut block[(n * K + k) * stride..][..stride], register);
                 }
             }
         }
         for entries in block
-            .chunks_mut(*stride)
+            .chunks_mut(stride)
             .skip((modes.fourier.last() + 1) * K)
         {
             entries[near..].fill(0.0);
         }
-        for (column, &j) in order.iter().enumerate().skip(near) {
+        for (column, &j) in workspace.order.iter().enumerate().skip(near) {
             let pair = Pair::new(
                 r,
                 splat(sources.r[j]),
@@ -280,10 +316,16 @@ impl<const K: usize, F: Kernel<K>> WithSimd for Evaluate<'_, K, F> {
                 mu_r,
                 mu_z,
             );
-            modes.fourier.sample(simd, kernel, &pair, fourier);
             modes
                 .fourier
-                .transform::<K>(F::PARITY, fourier, &mut block[column..], *stride);
+                .sample(simd, kernel, &pair, &mut workspace.fourier);
+            modes.fourier.transform::<K>(
+                F::PARITY,
+                &mut workspace.fourier,
+                &mut block[column..],
+                stride,
+            );
         }
+        workspace.block = block;
     }
 }

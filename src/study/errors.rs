@@ -4,7 +4,6 @@ use super::plan::MEMORY;
 use super::setup::{Errors, Setup};
 use super::{StudyError, bytes, spheroid};
 use crate::body::dirichlet::{DirichletSolver, Formulation};
-use crate::body::flow::FlowError;
 use crate::body::surface::SurfaceModes;
 use crate::progress::{Progress, Silent};
 
@@ -110,15 +109,8 @@ fn errors(setup: &Setup, solver: &DirichletSolver, n_max: usize) -> Result<Error
     let density = solver.solve(&data).truncated(n_max);
     let targets = setup.targets_of_body();
     let flow = solver.flow(&density);
-    let mut tolerance = EVALUATION;
-    loop {
-        match flow.at(&targets, tolerance) {
-            Ok(values) => return Ok(setup.errors(values.iter().map(|value| value.velocity))),
-            // The coarsest panels cannot be summed so well; their own error is far larger.
-            Err(FlowError::TooNear { .. }) if tolerance < 1e-3 => tolerance *= 10.0,
-            Err(error) => return Err(error.into()),
-        }
-    }
+    let values = flow.at(&targets, EVALUATION)?;
+    Ok(setup.errors(values.iter().map(|value| value.velocity)))
 }
 
 #[cfg(test)]

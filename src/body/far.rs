@@ -1,0 +1,182 @@
+//! The flow of both layers away from the surface: direct sums over points.
+//!
+//! With the trapezoidal rule in the azimuth and Gauss–Legendre panels along the curve both converge exponentially in the number of
+//! points per distance; where they do not resolve a panel's action, the [close](super::close) fields take over. Both have pressure and
+//! gradient from the same derivatives of the density: only so may a surface be shared between them.
+
+use std::f64::consts::PI;
+use std::ops::Range;
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+use num_complex::Complex64;
+use panel_quadrature::QuadratureError;
+use rustfft::{Fft, FftPlanner};
+
+use super::densities::Densities;
+use super::discretization::Discretization;
+use super::near::bernstein;
+use super::surface::azimuths;
+use crate::curve::Meridian;
+use crate::kernel::{DENSITIES, SurfacePoint, SurfacePoints};
+
+/// Natural logarithm of what the rules' errors exceed the bare powers by: the kernels are large near the surface.
+const MARGIN: f64 = 7.0;
+
+/// What is left of the ellipse's parameter (its logarithm) on a panel that bends towards the target.
+const BENT: f64 = 0.9;
+
+/// Natural logarithm of how far below the density's last coefficients the quadrature's error is worth pushing.
+const BELOW_LEFT_OUT: f64 = 21.0;
+
+/// The densities on points of the surface.
+#[derive(Clone, Debug)]
+pub(super) struct FarFlow {
+    /// Panel after panel, each padded.
+    pub points: SurfacePoints,
+    per_panel: usize,
+    azimuths: usize,
+    order: usize,
+    /// Logarithm of each mode's largest coefficient relative to the largest of all, and panel after panel the same of its Legendre
+    /// coefficients along the curve.
+    mode_decay: Vec<f64>,
+    panel_decay: Vec<f64>,
+}
+
+/// From which separation on the points resolve a panel's action, to a tolerance.
+#[derive(Debug)]
+pub(super) struct Separation {
+    /// $\chi - 1$ of the rings.
+    h: f64,
+    /// The parameter of the Bernstein ellipse around each panel.
+    rho: Vec<f64>,
+}
+
+impl FarFlow {
+    /// Puts the densities on points.
+    pub fn new(
+        discretization: &Discretization,
+        densities: &Densities,
+    ) -> Result<Self, QuadratureError> {
+        let azimuths = azimuths(densities.modes().max(16));
+        let points = sample(discretization, densities, azimuths);
+        Ok(Self {
+            per_panel: points.len() / discretization.panels().len(),
+            points,
+            azimuths,
+            order: discretization.order(),
+            mode_decay: densities.mode_decay(),
+            panel_decay: densities.panel_decay(discretization)?,
+        })
+    }
+
+    /// The points of a panel.
+    pub fn panel(&self, panel: usize) -> Range<usize> {
+        panel * self.per_panel..(panel + 1) * self.per_panel
+    }
+
+    /// The separation for an error below `tolerance` relative to the densities, or well below what their own expansion leaves out.
+    pub fn separation(&self, tolerance: f64) -> Separation {
+        let ends = self.panel_decay.chunks(self.order);
+        let left_out = ends.map(|c| c[self.order - 1].max(c[self.order - 2]));
+        let enough = BELOW_LEFT_OUT - left_out.fold(f64::NEG_INFINITY, f64::max);
+        let digits = (MARGIN - tolerance.ln()).min(enough);
+        // Mode m of the density meets mode count - m of the kernel.
+        let xi = (self.mode_decay.iter().enumerate())
+            .map(|(m, decay)| (decay + digits) / (self.azimuths - m) as f64)
+            .fold(0.0, f64::max);
+        // Degree k of the density leaves 2 order - k to the kernel.
+        let log_rho = |decay: &[f64]| {
+            (decay.iter().enumerate())
+                .map(|(k, decay)| (decay + digits) / (2 * self.order - k) as f64)
+                .fold(0.0, f64::max)
+        };
+        Separation {
+            h: 2.0 * (0.5 * xi).sinh().powi(2),
+            rho: (self.panel_decay.chunks(self.order))
+                .map(|decay| (log_rho(decay) / BENT).exp())
+                .collect(),
+        }
+    }
+}
+
+impl Separation {
+    /// Whether the points resolve what a panel does to a target.
+    pub fn is_kept(&self, discretization: &Discretization, target: Meridian, panel: usize) -> bool {
+        let around = discretization.nodes_of(panel).iter().all(|node| {
+            let square = (target.r - node.r).powi(2) + (target.z - node.z).powi(2);
+            square >= self.h * 2.0 * target.r * node.r
+        });
+        let ends = discretization.ends(panel);
+        let length = discretization.arc_length(panel);
+        around && bernstein([target.r, target.z], ends, length) >= self.rho[panel]
+    }
+}
+
+/// The densities on so many azimuths of every node.
+fn sample(discretization: &Discretization, densities: &Densities, count: usize) -> SurfacePoints {
+    let nodes = discretization.nodes();
+    let fft: Arc<dyn Fft<f64>> = FftPlanner::new().plan_fft_inverse(count);
+    let mut ring = vec![Complex64::default(); count];
+    let mut components = vec![[0.0; DENSITIES]; count];
+    let mut points = SurfacePoints::with_capacity(nodes.len() * count);
+    let rotation: Vec<(f64, f64)> = (0..count)
+        .map(|l| (2.0 * PI * l as f64 / count as f64).sin_cos())
+        .collect();
+    for (k, node) in nodes.iter().enumerate() {
+        for j in 0..DENSITIES {
+            spectrum(densities, k, j, &mut ring);
+            fft.process(&mut ring);
+            for (components, value) in components.iter_mut().zip(&ring) {
+                components[j] = value.re;
+            }
+        }
+        let area = node.weight * 2.0 * PI / count as f64;
+        for (&(sin, cos), components) in rotation.iter().zip(&components) {
+            let turned = |radial: f64, azimuthal: f64, axial: f64| {
+                Vector3::new(
+                    radial * cos - azimuthal * sin,
+                    radial * sin + azimuthal * cos,
+                    axial,
+                )
+            };
+            let density = |which: usize| {
+                let [radial, azimuthal, axial] = [0, 1, 2].map(|j| components[3 * which + j]);
+                area * turned(radial, azimuthal, axial)
+            };
+            let [nu_r, nu_z] = node.normal;
+            let (around, along) = (turned(0.0, 1.0, 0.0), turned(nu_z, 0.0, -nu_r));
+            let (y_theta, y_t) = (density(2), density(3));
+            // tau_i = -eps_ijm (nu x grad)_m sigma_j.
+            let tau = around.cross(&y_theta) + along.cross(&y_t);
+            points.push(SurfacePoint {
+                position: turned(node.r, 0.0, node.z),
+                normal: turned(nu_r, 0.0, nu_z),
+                double: density(0),
+                single: density(1),
+                moved: density(1) + 2.0 * tau,
+                curl: around * y_theta.transpose() + along * y_t.transpose(),
+            });
+        }
+        if (k + 1) % discretization.order() == 0 {
+            points.pad();
+        }
+    }
+    points
+}
+
+/// The complex spectrum of density `j` at node `k`; its inverse transform has the density as real part.
+fn spectrum(densities: &Densities, k: usize, j: usize, ring: &mut [Complex64]) {
+    // The first family has sin for the azimuthal components, but for the others of y^t.
+    let is_sin = (j % 3 == 1) != (j >= 9);
+    ring.fill(Complex64::default());
+    for (n, ring) in ring.iter_mut().enumerate().take(densities.modes()) {
+        let [first, second] = [0, 1].map(|f| densities.row((2 * n + f) * DENSITIES + j)[k]);
+        // Re((c - i s) e^{i n theta}) = c cos + s sin.
+        *ring = if is_sin {
+            Complex64::new(-second, -first)
+        } else {
+            Complex64::new(first, -second)
+        };
+    }
+}

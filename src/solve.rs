@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 use std::sync::Arc;
+use std::time::Instant;
 
 use nalgebra::{Matrix3, Point3, Unit, Vector3};
 
@@ -109,28 +110,50 @@ impl SolvedBody {
     /// azimuths of a node one after the other.
     pub fn surface(&self, azimuths: usize) -> Vec<SurfaceSample> {
         let velocity = self.flow.surface_velocity();
-        let nodes = self.flow.discretization.nodes().iter().enumerate();
-        let samples = nodes.flat_map(|(k, node)| {
-            let velocity = &velocity;
-            (0..azimuths).map(move |l| {
-                let theta = 2.0 * PI * l as f64 / azimuths as f64;
-                let turned = |[r, t, z]: [f64; 3]| {
-                    let (sin, cos) = theta.sin_cos();
-                    Vector3::new(r * cos - t * sin, r * sin + t * cos, z)
-                };
-                SurfaceSample {
-                    point: self
-                        .frame
-                        .point_to_lab(turned([node.r, 0.0, node.z]).into()),
-                    normal: self
-                        .frame
-                        .vector_to_lab(turned([node.normal[0], 0.0, node.normal[1]])),
-                    velocity: self.frame.vector_to_lab(turned(velocity.at(k, theta))),
-                }
-            })
+        let nodes = self.flow.discretization.nodes();
+        let samples = azimuths_of(nodes.len(), azimuths).map(|(k, theta)| {
+            let node = &nodes[k];
+            let to_lab = |components| self.frame.vector_to_lab(turned(components, theta));
+            SurfaceSample {
+                point: self
+                    .frame
+                    .point_to_lab(turned([node.r, 0.0, node.z], theta).into()),
+                normal: to_lab([node.normal[0], 0.0, node.normal[1]]),
+                velocity: to_lab(velocity.at(k, theta)),
+            }
         });
         samples.collect()
     }
+
+    /// The traction of the fluid on the surface, its normal pointing out of the body, at the points of [`surface`](Self::surface).
+    ///
+    /// # Errors
+    /// If a quadrature rule is missing.
+    pub fn traction(&self, azimuths: usize) -> Result<Vec<Vector3<f64>>, SolveError> {
+        let traction = self.flow.traction();
+        let traction = traction.map_err(|error| SolveError::Failed(error.to_string()))?;
+        let samples = azimuths_of(traction.nodes(), azimuths).map(|(k, theta)| {
+            let traction = turned(traction.at(k, theta), theta);
+            self.viscosity * self.frame.vector_to_lab(traction)
+        });
+        Ok(samples.collect())
+    }
+}
+
+/// Every node of a generating curve at equal steps about the axis.
+fn azimuths_of(nodes: usize, azimuths: usize) -> impl Iterator<Item = (usize, f64)> {
+    let theta = move |l: usize| 2.0 * PI * l as f64 / azimuths as f64;
+    (0..nodes).flat_map(move |k| (0..azimuths).map(move |l| (k, theta(l))))
+}
+
+/// The vector with these cylindrical components (radial, azimuthal, axial) at an azimuth.
+fn turned([radial, azimuthal, axial]: [f64; 3], theta: f64) -> Vector3<f64> {
+    let (sin, cos) = theta.sin_cos();
+    Vector3::new(
+        radial * cos - azimuthal * sin,
+        radial * sin + azimuthal * cos,
+        axial,
+    )
 }
 
 /// Where a point lies in the half plane.
@@ -195,7 +218,7 @@ pub fn solve(case: &Case, progress: &dyn Progress) -> Result<Solved, SolveError>
             }),
     }
     .map_err(|error| setting.problem_error(error))?;
-    let mut report = setting.report(&answer);
+    let mut report = setting.report(&answer)?;
     if case.test.is_some() {
         let exact = targets.iter().map(|&x| field(x.coords));
         let errors = exact
@@ -335,7 +358,7 @@ impl<'a> Setting<'a> {
         self.frame.flow_to_body(&flow)
     }
 
-    fn report(&self, answer: &Answer) -> Report {
+    fn report(&self, answer: &Answer) -> Result<Report, SolveError> {
         let viscosity = self.case.viscosity;
         let to_lab = |v: Vector3<f64>| self.frame.vector_to_lab(v).into();
         let velocities = [answer.motion.velocity, answer.motion.angular_velocity].map(to_lab);
@@ -349,6 +372,10 @@ impl<'a> Setting<'a> {
             } => ([velocity, angular_velocity], forces),
             Motion::Free { force, torque } => (velocities, [force, torque]),
         };
+        let start = Instant::now();
+        let power = answer.body_flow.power();
+        let power = power.map_err(|error| SolveError::Failed(error.to_string()))?;
+        let surface = start.elapsed().as_secs_f64();
         let stresslet = self.frame.tensor_to_lab(&answer.body_flow.stresslet());
         let probes = self
             .case
@@ -361,13 +388,14 @@ impl<'a> Setting<'a> {
                 pressure: viscosity * flow.pressure,
             });
         let t = answer.timings;
-        Report {
+        Ok(Report {
             bodies: vec![BodyReport {
                 velocity,
                 angular_velocity,
                 force,
                 torque,
                 stresslet: (viscosity * stresslet).transpose().into(),
+                power: viscosity * power,
             }],
             probes: probes.collect(),
             error_estimate: answer.error_estimate,
@@ -383,11 +411,11 @@ impl<'a> Setting<'a> {
                 assemble: t.assemble,
                 factor: t.factor,
                 iterate: t.solve,
-                evaluate: t.evaluate,
+                evaluate: t.evaluate + surface,
                 estimate: t.estimate,
             },
             test: None,
-        }
+        })
     }
 
     fn problem_error(&self, error: ProblemError) -> SolveError {

@@ -77,7 +77,7 @@ fn a_squirmer_in_shear_is_carried_along() {
     );
     // Far away little is left but the shear and the force's Stokeslet.
     let far = Vector3::from(report.probes[0].velocity);
-    let exact = 0.4 * 1e4 * Vector3::y() + 0.3 / (4.0 * PI * 2.5 * 1e4) * Vector3::z();
+    let exact: Vector3<f64> = 0.4 * 1e4 * Vector3::y() + 0.3 / (4.0 * PI * 2.5 * 1e4) * Vector3::z();
     assert!((far - exact).norm() <= 1e-7, "{far}");
     assert!(report.error_estimate <= 1e-11);
 }

@@ -101,6 +101,14 @@ fn write_bodies(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
                 numbers(vector)
             )?;
         }
+        writeln!(
+            out,
+            "{:>6}  {:width$}  {:16}  {}",
+            "",
+            "",
+            "power",
+            number(answer.power)
+        )?;
     }
     Ok(())
 }

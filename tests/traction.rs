@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use axistokes::nalgebra::{Matrix3, Vector3};
 use axistokes::{
-    Answer, GeneratingCurve, LinearFlow, Motion, Polar, Problem, RigidMotion, Silent, Spheroid,
-    SurfaceModes, Torus, Wrench,
+    Answer, GeneratingCurve, LinearFlow, Motion, Panels, Polar, Problem, Resolution, RigidMotion,
+    Silent, Spheroid, SurfaceModes, Torus, Wrench,
 };
 use fastrand::Rng;
 
@@ -29,7 +29,15 @@ fn curves() -> [Arc<dyn GeneratingCurve>; 3] {
 }
 
 fn solved(problem: Problem<'_>) -> (Answer, SurfaceModes) {
-    let answer = problem.to_tolerance(1e-12, &Silent).expect("an answer");
+    // Tractions take a derivative of the density: panels that serve velocities to 1e-12 are not enough.
+    let resolution = Resolution {
+        panels: Panels::equal_arcs(&*problem.curve, 10).expect("panels"),
+        order: 16,
+        modes: 24,
+    };
+    let answer = problem
+        .at_resolution(resolution, &Silent)
+        .expect("an answer");
     let traction = answer.body_flow.traction().expect("a traction");
     (answer, traction)
 }
@@ -78,13 +86,11 @@ fn two_motions_are_reciprocal() {
                 ..Problem::new(curve.clone())
             })
         });
-        // On the coarser panels of the two both are known: they are the same if the tolerance was met at once.
         let nodes = &a.0.body_flow.discretization;
         let (here, there) = (
             a.0.body_flow.surface_velocity(),
             b.0.body_flow.surface_velocity(),
         );
-        assert_eq!(here.nodes(), there.nodes(), "choose another seed");
         let forth = here.inner_product(nodes, &b.1);
         let back = there.inner_product(nodes, &a.1);
         let power = -here.inner_product(nodes, &a.1);

@@ -65,7 +65,7 @@ impl Solved {
     /// Velocity and pressure of the whole flow at any points, `None` inside a body.
     ///
     /// # Errors
-    /// If a point is not finite, or too near to a surface for the tolerance of the case.
+    /// If a point is not finite.
     pub fn flow_at(&self, points: &[Point3<f64>]) -> Result<Vec<Option<FlowAt>>, SolveError> {
         let failed = |error: &dyn std::fmt::Display| SolveError::Failed(error.to_string());
         let mut flow = vec![None; points.len()];

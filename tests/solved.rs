@@ -48,3 +48,17 @@ fn the_surface_is_that_of_the_body_and_moves_with_it() {
         assert!((sample.velocity - velocity).norm() < 1e-14);
     }
 }
+
+/// The traction of a sphere in translation is the same everywhere, $-3\mu U/2a$ (Stokes 1851).
+#[test]
+fn the_traction_of_a_sphere_is_uniform() {
+    let (case, solved) = solved("sphere-drag.toml");
+    let tractions = solved.bodies[0].traction(5).expect("a traction");
+    assert_eq!(tractions.len(), solved.bodies[0].surface(5).len());
+    for traction in tractions {
+        let exact: Vector3<f64> = -1.5 * case.viscosity * Vector3::z();
+        assert!((traction - exact).norm() < 1e-11, "{traction}");
+    }
+    let power = solved.report.bodies[0].power;
+    assert!((power - 6.0 * std::f64::consts::PI).abs() < 1e-11);
+}

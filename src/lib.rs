@@ -1,9 +1,9 @@
 //! Stokes flow around axisymmetric bodies, by boundary integral equations, with an error that is estimated.
 //!
-//! A body is given by its generating curve and by what its surface does. In the azimuth the equations on the surface
+//! A body is given by its generating curve, by what moves it and by what its surface does. In the azimuth the equations on the surface
 //! fall apart into Fourier modes; each is solved on the curve by a Nyström method whose quadrature is exact to rounding
-//! also where the kernels are singular. The answer is the force and torque on the fluid and the flow at any points
-//! away from the body. The drag of a sphere is $6\pi$:
+//! also where the kernels are singular. The answer is the force and torque on the fluid, or the motion of a free
+//! body, and the flow at any points. The drag of a sphere is $6\pi$:
 //!
 //! ```
 //! use axistokes::*;

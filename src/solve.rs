@@ -1,7 +1,7 @@
 //! From a case to its answer.
 
-use std::f64::consts::PI;
 use std::sync::Arc;
+use std::time::Instant;
 
 use nalgebra::{Matrix3, Point3, Unit, Vector3};
 
@@ -49,22 +49,11 @@ pub struct SolvedBody {
     flow: BodyFlow,
 }
 
-/// A point of a body's surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfaceSample {
-    /// The point.
-    pub point: Point3<f64>,
-    /// The outward unit normal.
-    pub normal: Vector3<f64>,
-    /// The velocity of the surface, and of the fluid there.
-    pub velocity: Vector3<f64>,
-}
-
 impl Solved {
     /// Velocity and pressure of the whole flow at any points, `None` inside a body.
     ///
     /// # Errors
-    /// If a point is not finite, or too near to a surface for the tolerance of the case.
+    /// If a point is not finite.
     pub fn flow_at(&self, points: &[Point3<f64>]) -> Result<Vec<Option<FlowAt>>, SolveError> {
         let failed = |error: &dyn std::fmt::Display| SolveError::Failed(error.to_string());
         let mut flow = vec![None; points.len()];
@@ -108,33 +97,6 @@ impl SolvedBody {
     /// The flow in the body's own frame and for viscosity 1, with panels and nodes of its generating curve.
     pub fn flow(&self) -> &BodyFlow {
         &self.flow
-    }
-
-    /// The surface at the nodes of the generating curve, each turned to `azimuths` equal steps about the axis: node after node, the
-    /// azimuths of a node one after the other.
-    pub fn surface(&self, azimuths: usize) -> Vec<SurfaceSample> {
-        let velocity = self.flow.surface_velocity();
-        let nodes = self.flow.discretization.nodes().iter().enumerate();
-        let samples = nodes.flat_map(|(k, node)| {
-            let velocity = &velocity;
-            (0..azimuths).map(move |l| {
-                let theta = 2.0 * PI * l as f64 / azimuths as f64;
-                let turned = |[r, t, z]: [f64; 3]| {
-                    let (sin, cos) = theta.sin_cos();
-                    Vector3::new(r * cos - t * sin, r * sin + t * cos, z)
-                };
-                SurfaceSample {
-                    point: self
-                        .frame
-                        .point_to_lab(turned([node.r, 0.0, node.z]).into()),
-                    normal: self
-                        .frame
-                        .vector_to_lab(turned([node.normal[0], 0.0, node.normal[1]])),
-                    velocity: self.frame.vector_to_lab(turned(velocity.at(k, theta))),
-                }
-            })
-        });
-        samples.collect()
     }
 }
 
@@ -200,7 +162,7 @@ pub fn solve(case: &Case, progress: &dyn Progress) -> Result<Solved, SolveError>
             }),
     }
     .map_err(|error| setting.problem_error(error))?;
-    let mut report = setting.report(&answer);
+    let mut report = setting.report(&answer)?;
     if case.test.is_some() {
         let exact = targets.iter().map(|&x| field(x.coords));
         let errors = exact
@@ -340,7 +302,7 @@ impl<'a> Setting<'a> {
         self.frame.flow_to_body(&flow)
     }
 
-    fn report(&self, answer: &Answer) -> Report {
+    fn report(&self, answer: &Answer) -> Result<Report, SolveError> {
         let viscosity = self.case.viscosity;
         let to_lab = |v: Vector3<f64>| self.frame.vector_to_lab(v).into();
         let velocities = [answer.motion.velocity, answer.motion.angular_velocity].map(to_lab);
@@ -354,6 +316,10 @@ impl<'a> Setting<'a> {
             } => ([velocity, angular_velocity], forces),
             Motion::Free { force, torque } => (velocities, [force, torque]),
         };
+        let start = Instant::now();
+        let power = answer.body_flow.power();
+        let power = power.map_err(|error| SolveError::Failed(error.to_string()))?;
+        let surface = start.elapsed().as_secs_f64();
         let stresslet = self.frame.tensor_to_lab(&answer.body_flow.stresslet());
         let probes = self
             .case
@@ -366,13 +332,14 @@ impl<'a> Setting<'a> {
                 pressure: viscosity * flow.pressure,
             });
         let t = answer.timings;
-        Report {
+        Ok(Report {
             bodies: vec![BodyReport {
                 velocity,
                 angular_velocity,
                 force,
                 torque,
                 stresslet: (viscosity * stresslet).transpose().into(),
+                power: viscosity * power,
             }],
             probes: probes.collect(),
             error_estimate: answer.error_estimate,
@@ -388,11 +355,11 @@ impl<'a> Setting<'a> {
                 assemble: t.assemble,
                 factor: t.factor,
                 iterate: t.solve,
-                evaluate: t.evaluate,
+                evaluate: t.evaluate + surface,
                 estimate: t.estimate,
             },
             test: None,
-        }
+        })
     }
 
     fn problem_error(&self, error: ProblemError) -> SolveError {

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use axistokes::case::Case;
 use axistokes::nalgebra::{Point3, Vector3};
+use axistokes::output::vtk::Surface;
 use axistokes::progress::Silent;
 use axistokes::solve::{Solved, solve};
 
@@ -34,17 +35,31 @@ fn the_surface_is_that_of_the_body_and_moves_with_it() {
     let (case, solved) = solved("oblique-spheroid.toml");
     let body = &case.bodies[0];
     let [center, axis] = [body.center, body.axis].map(Vector3::from);
-    let samples = solved.bodies[0].surface(8);
+    let surface = Surface::of(&solved.bodies[0], 8).expect("a surface");
     let nodes = solved.bodies[0].flow().discretization.nodes().len();
-    assert_eq!(samples.len(), 8 * nodes);
-    for sample in samples {
-        let x = sample.point.coords - center;
+    // The poles come last.
+    assert_eq!(surface.points.len(), 8 * nodes + 2);
+    for (k, point) in surface.points.iter().enumerate() {
+        let x = point.coords - center;
         let (along, across) = (x.dot(&axis), x - axis * x.dot(&axis));
         let equation = along * along + across.norm_squared() / 0.25;
         assert!((equation - 1.0).abs() < 1e-14);
         let gradient = axis * along + across / 0.25;
-        assert!((sample.normal - gradient.normalize()).norm() < 1e-13);
+        assert!((surface.normals[k] - gradient.normalize()).norm() < 1e-13);
         let velocity = Vector3::z() + Vector3::new(0.3, 0.0, -0.2).cross(&x);
-        assert!((sample.velocity - velocity).norm() < 1e-14);
+        assert!((surface.velocity[k] - velocity).norm() < 1e-13);
     }
+}
+
+/// The traction of a sphere in translation is the same everywhere, $-3\mu U/2a$ (Stokes 1851).
+#[test]
+fn the_traction_of_a_sphere_is_uniform() {
+    let (case, solved) = solved("sphere-drag.toml");
+    let surface = Surface::of(&solved.bodies[0], 5).expect("a surface");
+    for traction in surface.traction {
+        let exact: Vector3<f64> = -1.5 * case.viscosity * Vector3::z();
+        assert!((traction - exact).norm() < 1e-11, "{traction}");
+    }
+    let power = solved.report.bodies[0].power;
+    assert!((power - 6.0 * std::f64::consts::PI).abs() < 1e-11);
 }

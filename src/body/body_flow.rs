@@ -1,9 +1,10 @@
 //! The flow around a body as it was solved for: the undisturbed flow and what the body adds to it.
 
 use nalgebra::{Matrix3, Point3};
+use panel_quadrature::QuadratureError;
 
 use super::discretization::Discretization;
-use super::flow::{Flow, FlowError};
+use super::flow::{Flow, FlowError, Side};
 use super::layers::Layers;
 use super::linear_flow::LinearFlow;
 use super::rigid::{RigidMotion, Wrench};
@@ -74,6 +75,36 @@ impl BodyFlow {
     /// The stresslet about the origin, of the disturbance; see [`stresslet`].
     pub fn stresslet(&self) -> Matrix3<f64> {
         stresslet(&self.discretization, &self.layers)
+    }
+
+    /// The traction $\sigma\nu$ of the fluid on the surface, its normal pointing out of the body: of the whole flow, background included.
+    ///
+    /// # Errors
+    /// If a quadrature rule is missing.
+    pub fn traction(&self) -> Result<SurfaceModes, QuadratureError> {
+        let of_body = self.disturbance().traction(Side::Exterior)?;
+        Ok(of_body.plus(1.0, &self.background.traction(&self.discretization)))
+    }
+
+    /// The rate of work $-\int u \cdot \sigma\nu\, d\Gamma$ that the surface does on the fluid; in a fluid at rest at infinity, the dissipation.
+    ///
+    /// In the rigid motion it is $F \cdot U + T \cdot \Omega$; the traction is needed for the slip's part only.
+    ///
+    /// # Errors
+    /// If a quadrature rule is missing.
+    pub fn power(&self) -> Result<f64, QuadratureError> {
+        let Wrench { force, torque } = self.wrench();
+        let of_motion =
+            force.dot(&self.motion.velocity) + torque.dot(&self.motion.angular_velocity);
+        let slips = (0..self.slip.modes()).any(|n| self.slip.amplitude(n) > 0.0);
+        let of_slip = if slips {
+            -self
+                .slip
+                .inner_product(&self.discretization, &self.traction()?)
+        } else {
+            0.0
+        };
+        Ok(of_motion + of_slip)
     }
 
     /// The velocity of the surface, rigid motion and slip.

@@ -26,9 +26,6 @@ const MARGIN: f64 = 7.0;
 /// What is left of the ellipse's parameter (its logarithm) on a panel that bends towards the target.
 const BENT: f64 = 0.9;
 
-/// Natural logarithm of how far below the density's last coefficients the quadrature's error is worth pushing.
-const BELOW_LEFT_OUT: f64 = 21.0;
-
 /// The densities on points of the surface.
 #[derive(Clone, Debug)]
 pub(super) struct FarFlow {
@@ -75,12 +72,9 @@ impl FarFlow {
         panel * self.per_panel..(panel + 1) * self.per_panel
     }
 
-    /// The separation for an error below `tolerance` relative to the densities, or well below what their own expansion leaves out.
+    /// The separation for an error below `tolerance` relative to the densities.
     pub fn separation(&self, tolerance: f64) -> Separation {
-        let ends = self.panel_decay.chunks(self.order);
-        let left_out = ends.map(|c| c[self.order - 1].max(c[self.order - 2]));
-        let enough = BELOW_LEFT_OUT - left_out.fold(f64::NEG_INFINITY, f64::max);
-        let digits = (MARGIN - tolerance.ln()).min(enough);
+        let digits = MARGIN - tolerance.ln();
         // Mode m of the density meets mode count - m of the kernel.
         let xi = (self.mode_decay.iter().enumerate())
             .map(|(m, decay)| (decay + digits) / (self.azimuths - m) as f64)

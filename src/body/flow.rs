@@ -76,7 +76,7 @@ impl<'a> Flow<'a> {
     }
 
     /// Velocity and pressure at every target, inside, outside or on the surface, with an error of the quadrature below `tolerance`
-    /// relative to the densities, or well below what their own expansions leave out, if that is all there is to be had.
+    /// relative to the densities.
     ///
     /// # Errors
     /// [`FlowError::NotFinite`] for a target that is not a point.
@@ -105,7 +105,7 @@ impl<'a> Flow<'a> {
     ///
     /// # Errors
     /// If a quadrature rule is missing.
-    pub fn traction(&self, side: Side) -> Result<SurfaceModes, FlowError> {
+    pub fn traction(&self, side: Side) -> Result<SurfaceModes, QuadratureError> {
         let discretization = self.discretization;
         let (close, densities) = (self.close()?, self.densities());
         let nodes = discretization.nodes();
@@ -114,16 +114,16 @@ impl<'a> Flow<'a> {
             .map_init(close::Buffers::default, |buffers, node| {
                 let sight = limit(discretization, Sight::on(node), node.normal, side);
                 let panels = 0..discretization.panels().len();
-                Ok(close.fields(
+                close.fields(
                     discretization,
                     densities,
                     &VelocityPressureGradient,
                     &sight,
                     panels,
                     buffers,
-                )?)
+                )
             })
-            .collect::<Result<_, FlowError>>()?;
+            .collect::<Result<_, QuadratureError>>()?;
         let mut traction = SurfaceModes::zero(densities.modes() - 1, nodes.len());
         for (k, (node, fields)) in nodes.iter().zip(&rings).enumerate() {
             for (place, fields) in fields.chunks(FIELDS).enumerate() {

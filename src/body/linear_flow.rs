@@ -67,6 +67,13 @@ impl LinearFlow {
         2.0 * self.strain_rate()
     }
 
+    /// The traction on the surface, for viscosity 1: modes 0 to 2, exactly.
+    pub fn traction(&self, discretization: &Discretization) -> SurfaceModes {
+        let stress = self.stress();
+        SurfaceModes::sample_with_normal(discretization, LAST_MODE, |_, normal| stress * normal)
+            .modes
+    }
+
     /// The velocity on the surface: modes 0 to 2, exactly.
     pub fn on(&self, discretization: &Discretization) -> Sampled {
         SurfaceModes::sample(discretization, LAST_MODE, |x| self.at(x))

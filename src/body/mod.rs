@@ -47,4 +47,3 @@ pub mod slip;
 mod storage;
 pub mod stresslet;
 pub mod surface;
-mod traction;

@@ -1,7 +1,24 @@
 //! Exterior problems on one body, answered with an estimate of the error.
 //!
 //! On the surface the velocity is $U + \Omega \times x + u_s$, in a fluid that would flow with $u_\infty$ were the body not there. The rigid
-//! motion is given or, for a free body, found from force and torque; the slip $u_s$ is any function.
+//! motion is given or, for a free body, found from force and torque; the slip $u_s$ is any function. A squirmer, say, swims with
+//! two thirds of its first mode:
+//!
+//! ```
+//! use axistokes::*;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let slip = squirmer(&[1.5, 3.0]);
+//! let problem = Problem {
+//!     motion: Motion::Free(Wrench::zero()),
+//!     slip: Some(&slip),
+//!     ..Problem::new(std::sync::Arc::new(Spheroid::sphere(1.0)?))
+//! };
+//! let answer = problem.to_tolerance(1e-10, &Silent)?;
+//! assert!((answer.motion.velocity.z - 1.0).abs() < 1e-10);
+//! # Ok(())
+//! # }
+//! ```
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -203,7 +220,7 @@ impl<'a> Problem<'a> {
     /// The answer at a given resolution.
     ///
     /// # Errors
-    /// If a target is too near to the surface, or there is no quadrature of that order.
+    /// If a target is not finite, the velocity imposed is not, or there is no quadrature of that order.
     pub fn at_resolution(
         &self,
         resolution: Resolution,
@@ -216,7 +233,7 @@ impl<'a> Problem<'a> {
     /// [`Answer::error_estimate`] with the tolerance.
     ///
     /// # Errors
-    /// If a target is too near to the surface for the tolerance, or the curve is not smooth enough.
+    /// If a target is not finite, the velocity imposed is not, or the curve is not smooth enough.
     pub fn to_tolerance(
         &self,
         tolerance: f64,

@@ -71,7 +71,7 @@ pub struct RigidBodyMatrices {
 
 /// Modes of rigid motions end with this one.
 const LAST_MODE: usize = 1;
-/// Most panels that are tried: 4 GB of matrices.
+/// Most panels that are tried: 3 GB of matrices.
 const MOST_PANELS: usize = 160;
 
 /// The matrix $[v]$ with $[v]\\, w = v \times w$.

@@ -52,11 +52,19 @@ impl SurfaceModes {
     }
 
     /// The modes up to `n_max` of the field `f`, a vector in the body's frame at a point of its surface.
-    ///
     pub fn sample(
         discretization: &Discretization,
         n_max: usize,
         f: impl Fn(Vector3<f64>) -> Vector3<f64>,
+    ) -> Sampled {
+        Self::sample_with_normal(discretization, n_max, |x, _| f(x))
+    }
+
+    /// The same of a field that depends on the outward unit normal too, its second argument.
+    pub fn sample_with_normal(
+        discretization: &Discretization,
+        n_max: usize,
+        f: impl Fn(Vector3<f64>, Vector3<f64>) -> Vector3<f64>,
     ) -> Sampled {
         let nodes = discretization.nodes();
         let count = azimuths(n_max);
@@ -70,7 +78,8 @@ impl SurfaceModes {
                 radial.iter_mut().zip(azimuthal).zip(axial).enumerate()
             {
                 let (sin, cos) = (2.0 * PI * l as f64 / count as f64).sin_cos();
-                let value = f(Vector3::new(node.r * cos, node.r * sin, node.z));
+                let at = |r: f64, z: f64| Vector3::new(r * cos, r * sin, z);
+                let value = f(at(node.r, node.z), at(node.normal[0], node.normal[1]));
                 // `max` would pass over a NaN.
                 let magnitude = value.norm();
                 largest = if magnitude.is_nan() {
@@ -116,6 +125,27 @@ impl SurfaceModes {
             values: self.values.iter().map(|x| factor * x).collect(),
             ..*self
         }
+    }
+
+    /// The inner product $\int a \cdot b\, d\Gamma$ with another field on the nodes of `discretization`.
+    pub fn inner_product(&self, discretization: &Discretization, other: &Self) -> f64 {
+        let mut sum = 0.0;
+        for (n, k) in (0..self.modes.min(other.modes)).flat_map(|n| (0..6).map(move |k| (n, k))) {
+            let (family, j) = (k / 3, k % 3);
+            // The integral of the square of the sine or cosine that this component comes with.
+            let around = match (n, (family == 1) == (j == 1)) {
+                (0, true) => 2.0 * PI,
+                (0, false) => continue,
+                _ => PI,
+            };
+            let [a, b] = [self, other].map(|field| field.component(n, family, j));
+            let products = discretization.nodes().iter().zip(a.iter().zip(b));
+            sum += around
+                * products
+                    .map(|(node, (a, b))| node.weight * a * b)
+                    .sum::<f64>();
+        }
+        sum
     }
 
     /// The field plus another one, on the same nodes, times a number.

@@ -64,7 +64,7 @@ pub struct Arguments {
 /// The subcommands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Solve a case once: forces, torques, velocities and pressure at the probes.
+    /// Solve a case once: motions, forces and torques, velocities and pressure at the probes.
     #[command(after_help = SOLVE_EXAMPLE)]
     Solve(Solve),
     /// Resistance and mobility matrices of the shapes of a case, with their scalar functions.

@@ -38,6 +38,8 @@ pub struct BodyReport {
     pub torque: [f64; 3],
     /// Stresslet about the centre, row by row: symmetric, without trace.
     pub stresslet: [[f64; 3]; 3],
+    /// Rate of work that the surface does on the fluid.
+    pub power: f64,
 }
 
 /// The flow at one probe.
@@ -104,6 +106,9 @@ impl Report {
             }
             if !body.stresslet.iter().all(finite) {
                 return Some(format!("bodies[{i}].stresslet"));
+            }
+            if !body.power.is_finite() {
+                return Some(format!("bodies[{i}].power"));
             }
         }
         for (i, probe) in self.probes.iter().enumerate() {

@@ -72,7 +72,7 @@ fn write_bodies(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
     let width = widest.max().unwrap_or(0).max("shape".len());
     writeln!(
         out,
-        "\nbodies; force and torque (about the centre) are exerted by the body on the fluid"
+        "\nbodies; force, torque and stresslet (about the centre) are exerted by the body on the fluid"
     )?;
     writeln!(
         out,
@@ -80,11 +80,15 @@ fn write_bodies(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
         "body", "shape", "quantity", "x", "y", "z"
     )?;
     for (i, (body, answer)) in case.bodies.iter().zip(&report.bodies).enumerate() {
+        let [along_x, along_y, along_z] = &answer.stresslet;
         let rows = [
             ("velocity", &answer.velocity),
             ("angular velocity", &answer.angular_velocity),
             ("force", &answer.force),
             ("torque", &answer.torque),
+            ("stresslet x", along_x),
+            ("stresslet y", along_y),
+            ("stresslet z", along_z),
         ];
         for (row, (quantity, vector)) in rows.into_iter().enumerate() {
             let (number, shape) = match row {
@@ -97,6 +101,14 @@ fn write_bodies(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
                 numbers(vector)
             )?;
         }
+        writeln!(
+            out,
+            "{:>6}  {:width$}  {:16}  {}",
+            "",
+            "",
+            "power",
+            number(answer.power)
+        )?;
     }
     Ok(())
 }

@@ -39,7 +39,6 @@ impl Surface {
         let nodes = &flow.discretization;
         let traction = flow.traction()?;
         let velocity = flow.surface_velocity();
-        let background = flow.background.stress();
         let mut surface = Self {
             points: Vec::new(),
             normals: Vec::new(),
@@ -51,11 +50,10 @@ impl Surface {
         let mut add = |at: [Vector3<f64>; 4]| {
             let [point, normal, velocity, traction] = at;
             let lab = |v: Vector3<f64>| body.frame().vector_to_lab(v);
-            let whole = traction + background * normal;
             surface.points.push(body.frame().point_to_lab(point.into()));
             surface.normals.push(lab(normal));
             surface.velocity.push(lab(velocity));
-            surface.traction.push(lab(body.viscosity() * whole));
+            surface.traction.push(lab(body.viscosity() * traction));
         };
         for (k, node) in nodes.nodes().iter().enumerate() {
             for l in 0..azimuths {

@@ -1,0 +1,236 @@
+//! Tractions of whole flows: what they integrate to, and the reciprocal theorem.
+
+use std::sync::Arc;
+
+use axistokes::body::flow::Side;
+use axistokes::body::layers::Layers;
+use axistokes::body::matrix::{LayerPotential, ModalMatrices};
+use axistokes::nalgebra::{Matrix3, Vector3};
+use axistokes::{
+    Answer, Discretization, Flow, GeneratingCurve, LinearFlow, Motion, Panels, Polar, Problem,
+    Resolution, RigidMotion, Silent, Spheroid, SurfaceModes, Torus, Wrench,
+};
+use fastrand::Rng;
+
+fn random_vector(rng: &mut Rng) -> Vector3<f64> {
+    Vector3::from_fn(|_, _| 2.0 * rng.f64() - 1.0)
+}
+
+fn random_motion(rng: &mut Rng) -> RigidMotion {
+    RigidMotion {
+        velocity: random_vector(rng),
+        angular_velocity: random_vector(rng),
+    }
+}
+
+fn curves() -> [Arc<dyn GeneratingCurve>; 3] {
+    [
+        Arc::new(Spheroid::new(1.0, 0.5).expect("a spheroid")),
+        Arc::new(Polar::new(&[1.0, 0.2, 0.1, 0.1]).expect("a pear")),
+        Arc::new(Torus::new(1.0, 0.4).expect("a torus")),
+    ]
+}
+
+fn solved(problem: Problem<'_>) -> (Answer, SurfaceModes) {
+    // Tractions take a derivative of the density: panels that serve velocities to 1e-12 are not enough.
+    let resolution = Resolution {
+        panels: Panels::equal_arcs(&*problem.curve, 10).expect("panels"),
+        order: 16,
+        modes: 24,
+    };
+    let answer = problem
+        .at_resolution(resolution, &Silent)
+        .expect("an answer");
+    let traction = answer.body_flow.traction().expect("a traction");
+    (answer, traction)
+}
+
+/// The largest difference of a traction from a function of the place, at a few azimuths of every node.
+fn error(answer: &Answer, exact: impl Fn(Vector3<f64>) -> Vector3<f64>) -> f64 {
+    let flow = &answer.body_flow;
+    let traction = flow.traction().expect("a traction");
+    let mut most = 0.0f64;
+    for (k, node) in flow.discretization.nodes().iter().enumerate() {
+        for theta in [0.3f64, 1.7, 4.0] {
+            let (sin, cos) = theta.sin_cos();
+            let [r, t, z] = traction.at(k, theta);
+            let found = Vector3::new(r * cos - t * sin, r * sin + t * cos, z);
+            most =
+                most.max((found - exact(Vector3::new(node.r * cos, node.r * sin, node.z))).norm());
+        }
+    }
+    most
+}
+
+/// Kim and Karrila 1991, chapter 4: -3 U/2a, -3 Omega x n, and 5 E n with the background's 2 E n; for spheroids -(F/4 pi a b c)
+/// times the distance of the tangent plane from the centre (Brenner 1964).
+#[test]
+fn of_spheres_and_spheroids_is_exact() {
+    let (u, omega) = (Vector3::new(1.0, 2.0, 3.0), Vector3::new(-0.5, 0.2, 1.0));
+    let sphere: Arc<dyn GeneratingCurve> = Arc::new(Spheroid::sphere(1.0).expect("a sphere"));
+    let (moving, _) = solved(Problem {
+        motion: Motion::Given(RigidMotion {
+            velocity: u,
+            angular_velocity: omega,
+        }),
+        ..Problem::new(sphere.clone())
+    });
+    let found = error(&moving, |n| -1.5 * u - 3.0 * omega.cross(&n));
+    println!("sphere that moves and turns: {found:.1e}");
+    assert!(found < 1e-11);
+    let strain = Matrix3::new(1.0, 0.3, 0.0, 0.3, -0.4, 0.1, 0.0, 0.1, -0.6);
+    let (strained, _) = solved(Problem {
+        background: LinearFlow {
+            velocity: Vector3::zeros(),
+            gradient: strain,
+        },
+        ..Problem::new(sphere)
+    });
+    let found = error(&strained, |n| 5.0 * strain * n);
+    println!("sphere in strain: {found:.1e}");
+    assert!(found < 1e-11);
+    for (polar, equatorial) in [(1.0, 0.25), (0.4, 1.0)] {
+        let curve: Arc<dyn GeneratingCurve> =
+            Arc::new(Spheroid::new(polar, equatorial).expect("a spheroid"));
+        let force = Vector3::new(0.3, -1.0, 0.7);
+        let (free, _) = solved(Problem {
+            motion: Motion::Free(Wrench {
+                force,
+                torque: Vector3::zeros(),
+            }),
+            ..Problem::new(curve)
+        });
+        let size = 4.0 * std::f64::consts::PI * polar * equatorial * equatorial;
+        let (a2, c2) = (equatorial * equatorial, polar * polar);
+        let found = error(&free, |x| {
+            let plane =
+                (x.x * x.x / (a2 * a2) + x.y * x.y / (a2 * a2) + x.z * x.z / (c2 * c2)).sqrt();
+            -force / (size * plane)
+        });
+        println!("spheroid {polar} x {equatorial} under a force: {found:.1e}");
+        assert!(found < 1e-9);
+    }
+}
+
+/// Of a single layer, by close evaluation against the adjoint of the double layer: the limits are -1/2 and +1/2 of the density plus the
+/// principal value, from outside and inside.
+#[test]
+fn of_a_single_layer_jumps_by_the_density() {
+    for curve in curves() {
+        let panels = Panels::equal_arcs(&*curve, 12).expect("panels");
+        let nodes = Discretization::new(curve, panels, 16).expect("nodes");
+        let density = SurfaceModes::sample(&nodes, 12, |x| {
+            Vector3::new((2.0 * x.x + x.z).sin(), x.y * x.z, (x.x - x.y).cos())
+        })
+        .modes;
+        let matrices = ModalMatrices::of(LayerPotential::SingleTraction, &nodes, 12).expect("T");
+        let principal = matrices.apply(&nodes, &density);
+        let flow = Flow::new(
+            &nodes,
+            Layers {
+                double: SurfaceModes::zero(0, nodes.nodes().len()),
+                single: density.clone(),
+            },
+        );
+        for (side, jump) in [(Side::Exterior, -0.5), (Side::Interior, 0.5)] {
+            let found = flow.traction(side).expect("a traction");
+            let error = found.plus(-1.0, &principal.clone().plus(jump, &density));
+            let error = (0..=12).map(|n| error.amplitude(n)).fold(0.0, f64::max);
+            println!("{:?} {side:?}: {error:.1e}", nodes.curve());
+            assert!(error < 1e-10);
+        }
+    }
+}
+
+/// The traction of a double layer is the same on both sides (Lyapunov and Tauber), and its integrals vanish.
+#[test]
+fn of_a_double_layer_does_not_jump() {
+    for curve in curves() {
+        let panels = Panels::equal_arcs(&*curve, 12).expect("panels");
+        let nodes = Discretization::new(curve, panels, 16).expect("nodes");
+        let density = SurfaceModes::sample(&nodes, 12, |x| {
+            Vector3::new((2.0 * x.x + x.z).sin(), x.y * x.z, (x.x - x.y).cos())
+        })
+        .modes;
+        let flow = Flow::new(
+            &nodes,
+            Layers {
+                single: SurfaceModes::zero(0, nodes.nodes().len()),
+                double: density.clone(),
+            },
+        );
+        let outside = flow.traction(Side::Exterior).expect("a traction");
+        let inside = flow.traction(Side::Interior).expect("a traction");
+        let jump = outside.clone().plus(-1.0, &inside);
+        let jump = (0..=12).map(|n| jump.amplitude(n)).fold(0.0, f64::max);
+        let Wrench { force, torque } = Wrench::of(&nodes, &outside);
+        println!(
+            "{:?}: jump {jump:.1e}, force {:.1e}, torque {:.1e}",
+            nodes.curve(),
+            force.norm(),
+            torque.norm()
+        );
+        assert!(jump < 1e-9 && force.norm() < 1e-10 && torque.norm() < 1e-10);
+    }
+}
+
+/// Against the force and torque of the density, in a linear flow and for free bodies too.
+#[test]
+fn integrates_to_force_and_torque() {
+    let mut rng = Rng::with_seed(5);
+    for curve in curves() {
+        let background = LinearFlow {
+            velocity: random_vector(&mut rng),
+            gradient: Matrix3::new(0.3, 0.5, -0.2, 0.1, -0.7, 0.6, 0.8, -0.4, 0.4),
+        };
+        let free = Wrench {
+            force: random_vector(&mut rng),
+            torque: random_vector(&mut rng),
+        };
+        for motion in [Motion::Given(random_motion(&mut rng)), Motion::Free(free)] {
+            let (answer, traction) = solved(Problem {
+                motion,
+                background,
+                ..Problem::new(curve.clone())
+            });
+            let found = Wrench::of(&answer.body_flow.discretization, &traction);
+            let scale = answer.wrench.force.norm().max(answer.wrench.torque.norm());
+            let force = (found.force + answer.wrench.force).norm() / scale;
+            let torque = (found.torque + answer.wrench.torque).norm() / scale;
+            println!("{curve:?} {motion:?}: force {force:.1e}, torque {torque:.1e}");
+            assert!(force <= 1e-10 && torque <= 1e-10);
+        }
+    }
+}
+
+/// Lorentz: $\int u \cdot \sigma'\nu = \int u' \cdot \sigma\nu$, for rigid motions with slip.
+#[test]
+fn two_motions_are_reciprocal() {
+    let mut rng = Rng::with_seed(6);
+    for curve in curves() {
+        let [a, b] = [(); 2].map(|()| {
+            let (wave, amplitude) = (random_vector(&mut rng), random_vector(&mut rng));
+            let slip = |x: Vector3<f64>| wave.dot(&x).sin() * amplitude;
+            let motion = Motion::Given(random_motion(&mut rng));
+            solved(Problem {
+                motion,
+                slip: Some(&slip),
+                ..Problem::new(curve.clone())
+            })
+        });
+        let nodes = &a.0.body_flow.discretization;
+        let (here, there) = (
+            a.0.body_flow.surface_velocity(),
+            b.0.body_flow.surface_velocity(),
+        );
+        let forth = here.inner_product(nodes, &b.1);
+        let back = there.inner_product(nodes, &a.1);
+        let power = -here.inner_product(nodes, &a.1);
+        let error = (forth - back).abs() / power;
+        let direct = a.0.body_flow.power().expect("a power");
+        println!(
+            "{curve:?}: {forth} and {back}, {error:.1e} of the power; powers {power} and {direct}"
+        );
+        assert!(error <= 1e-10 && (power / direct - 1.0).abs() <= 1e-10);
+    }
+}

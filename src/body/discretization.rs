@@ -16,6 +16,7 @@ pub struct Discretization {
     nodes: Vec<Node>,
     arc_lengths: Vec<f64>,
     ends: Vec<[[f64; 2]; 2]>,
+    turnings: Vec<f64>,
 }
 
 /// A point of a generating curve with its geometry.
@@ -78,6 +79,14 @@ impl Discretization {
             [point.r, point.z]
         };
         let ends = panels.iter().map(|p| [p.start, p.end].map(end)).collect();
+        let turning = |panel: &[Node]| -> f64 {
+            let angle = |pair: &[Node]| {
+                let ([a, b], [c, d]) = (pair[0].normal, pair[1].normal);
+                (a * d - b * c).atan2(a * c + b * d).abs()
+            };
+            panel.windows(2).map(angle).sum()
+        };
+        let turnings = nodes.chunks(order).map(turning).collect();
         Ok(Self {
             curve,
             panels,
@@ -85,6 +94,7 @@ impl Discretization {
             nodes,
             arc_lengths,
             ends,
+            turnings,
         })
     }
 
@@ -130,6 +140,11 @@ impl Discretization {
     /// Radius and height of a panel's ends.
     pub(crate) fn ends(&self, panel: usize) -> [[f64; 2]; 2] {
         self.ends[panel]
+    }
+
+    /// By how much the normal turns from a panel's first node to its last, in radians, all bends counting.
+    pub(crate) fn turning(&self, panel: usize) -> f64 {
+        self.turnings[panel]
     }
 
     /// Area of the surface.

@@ -23,9 +23,6 @@ use crate::kernel::{DENSITIES, SurfacePoint, SurfacePoints};
 /// Natural logarithm of what the rules' errors exceed the bare powers by: the kernels are large near the surface.
 const MARGIN: f64 = 7.0;
 
-/// What is left of the ellipse's parameter (its logarithm) on a panel that bends towards the target.
-const BENT: f64 = 0.9;
-
 /// The densities on points of the surface.
 #[derive(Clone, Debug)]
 pub(super) struct FarFlow {
@@ -88,7 +85,7 @@ impl FarFlow {
         Separation {
             h: 2.0 * (0.5 * xi).sinh().powi(2),
             rho: (self.panel_decay.chunks(self.order))
-                .map(|decay| (log_rho(decay) / BENT).exp())
+                .map(|decay| log_rho(decay).exp())
                 .collect(),
         }
     }
@@ -101,9 +98,7 @@ impl Separation {
             let square = (target.r - node.r).powi(2) + (target.z - node.z).powi(2);
             square >= self.h * 2.0 * target.r * node.r
         });
-        let ends = discretization.ends(panel);
-        let length = discretization.arc_length(panel);
-        around && bernstein([target.r, target.z], ends, length) >= self.rho[panel]
+        around && bernstein(discretization, [target.r, target.z], panel) >= self.rho[panel]
     }
 }
 

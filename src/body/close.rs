@@ -4,6 +4,11 @@
 //! ([near rules](super::near)) and the densities interpolated there. Pressure and gradient come from derivatives of the double layer's
 //! density, so that nothing worse than $1/|\bar x|^2$ is integrated and no digits are lost however close the ring is
 //! (`kernel::close`).
+//!
+//! The integration by parts leaves the density itself on the circles where panels end. Close by, those between two panels
+//! are left out: the density is continuous, and what its approximation jumps by would be magnified by the closeness.
+//! Everywhere else they are kept, as sources on rings: a panel then acts by its density and not by its derivatives, which are
+//! less accurate, and the other panels may be summed directly.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
@@ -11,10 +16,10 @@ use panel_quadrature::QuadratureError;
 
 use super::densities::Densities;
 use super::discretization::{Discretization, Node};
-use super::near::{NearNodes, NearRules, Sight};
+use super::near::{NearNodes, NearRules, Sight, offsets};
 use crate::curve::{Meridian, Topology};
 use crate::kernel::{
-    Modes, Potential, RingDensities, RingFields, SourceRings, TargetRing, Workspace,
+    DENSITIES, Modes, Potential, RingDensities, RingFields, SourceRings, TargetRing, Workspace,
 };
 
 /// Rules for close rings.
@@ -29,6 +34,8 @@ pub(super) struct CloseFlow {
 pub(super) struct Buffers {
     near: NearNodes,
     sources: SourceRings,
+    /// The ends of panels that keep their circle.
+    rings: Vec<(usize, End)>,
     gathered: Vec<f64>,
     densities: RingDensities,
     workspace: Workspace,
@@ -54,7 +61,7 @@ impl CloseFlow {
         densities: &Densities,
         potential: &impl Potential<K, FIELDS>,
         sight: &Sight,
-        panels: impl Iterator<Item = usize>,
+        panels: &[usize],
         buffers: &mut Buffers,
     ) -> Result<Vec<f64>, QuadratureError> {
         let point = sight.point();
@@ -63,7 +70,12 @@ impl CloseFlow {
             normal: [0.0; 2],
         };
         buffers.fields.reset(2 * densities.modes() * FIELDS);
-        for panel in panels {
+        buffers.rings.clear();
+        let count = discretization.panels().len();
+        // How near to a panel's end its circle is left out.
+        let order = discretization.order() as f64;
+        let reach = |panel: usize| discretization.arc_length(panel) / order;
+        for &panel in panels {
             let near = &mut buffers.near;
             if self.rules.is_far(discretization, point, panel) {
                 near.take_own_nodes(discretization, sight, panel);
@@ -74,30 +86,57 @@ impl CloseFlow {
             for first in (0..buffers.near.nodes.len()).step_by(BLOCK) {
                 buffers.sources.clear();
                 let near = &buffers.near;
-                for (node, &separation) in near
-                    .nodes
-                    .iter()
-                    .zip(&near.separation)
-                    .skip(first)
-                    .take(BLOCK)
-                {
+                let block = near.nodes.iter().zip(&near.separation);
+                for (node, &separation) in block.skip(first).take(BLOCK) {
                     buffers.sources.push(node.r, separation, node.normal);
                 }
                 self.engine
                     .arrange(target, &buffers.sources, &mut buffers.workspace);
                 buffers.interpolate(discretization, densities, panel, first);
-                self.engine.add_fields(
-                    potential,
-                    target,
-                    &buffers.sources,
-                    &buffers.densities,
-                    &mut buffers.workspace,
-                    &mut buffers.fields,
-                );
+                self.add(potential, target, buffers);
+            }
+            for (end, neighbour) in [
+                (End::Start, (panel + count - 1) % count),
+                (End::End, (panel + 1) % count),
+            ] {
+                let [r, z] = discretization.ends(panel)[end as usize];
+                let distance = (point.r - r).hypot(point.z - z);
+                let shared = panels.contains(&neighbour);
+                if !shared || distance >= reach(panel).max(reach(neighbour)) {
+                    buffers.rings.push((panel, end));
+                }
             }
         }
+        buffers.collect_rings(discretization, sight);
+        self.engine
+            .arrange(target, &buffers.sources, &mut buffers.workspace);
+        buffers.interpolate_rings(discretization, densities)?;
+        self.add(potential, target, buffers);
         Ok(buffers.fields.values().collect())
     }
+
+    fn add<const K: usize, const FIELDS: usize>(
+        &self,
+        potential: &impl Potential<K, FIELDS>,
+        target: TargetRing,
+        buffers: &mut Buffers,
+    ) {
+        self.engine.add_fields(
+            potential,
+            target,
+            &buffers.sources,
+            &buffers.densities,
+            &mut buffers.workspace,
+            &mut buffers.fields,
+        );
+    }
+}
+
+/// An end of a panel.
+#[derive(Clone, Copy, Debug)]
+enum End {
+    Start,
+    End,
 }
 
 impl Buffers {
@@ -143,6 +182,62 @@ impl Buffers {
                 Par::Seq,
             );
         }
+    }
+
+    /// The circles at the ends of panels as sources; none on the axis.
+    fn collect_rings(&mut self, discretization: &Discretization, sight: &Sight) {
+        self.sources.clear();
+        let curve = discretization.curve();
+        let poles = discretization.panels().topology() == Topology::PoleToPole;
+        let last = discretization.panels().len() - 1;
+        self.rings.retain(|&(panel, end)| match end {
+            End::Start => !(poles && panel == 0),
+            End::End => !(poles && panel == last),
+        });
+        for &(panel, end) in &self.rings {
+            let [start, stop] = offsets(discretization, sight, panel);
+            let ds = match end {
+                End::Start => start,
+                End::End => stop,
+            };
+            let chord = curve.chord(sight.s, ds);
+            let separation = [sight.gap.r - chord.r, sight.gap.z - chord.z];
+            // The normal does not matter to what circles carry.
+            self.sources
+                .push(sight.foot.r + chord.r, separation, [0.0; 2]);
+        }
+    }
+
+    /// What the circles carry: $y^\theta = \partial_\ell\sigma$ of a density that begins and ends there.
+    fn interpolate_rings(
+        &mut self,
+        discretization: &Discretization,
+        densities: &Densities,
+    ) -> Result<(), QuadratureError> {
+        let order = discretization.order();
+        self.densities
+            .resize(densities.rows(), self.workspace.columns());
+        self.densities.values.fill(0.0);
+        self.gathered.resize(order, 0.0);
+        for (place, &source) in self.workspace.order.iter().enumerate() {
+            let column = self.workspace.column(place);
+            let (panel, end) = self.rings[source];
+            let (t, sign) = match end {
+                End::Start => (-1.0, 1.0),
+                End::End => (1.0, -1.0),
+            };
+            let weight = sign * self.sources.r[source];
+            discretization
+                .basis()
+                .interpolation_row(t, &mut self.gathered)?;
+            for row in (0..densities.rows()).filter(|row| row % DENSITIES < 3) {
+                let sigma = &densities.row(row)[panel * order..][..order];
+                let at_end: f64 = sigma.iter().zip(&self.gathered).map(|(x, l)| x * l).sum();
+                // y^theta comes six rows after sigma.
+                self.densities.values[(row + 6) * self.densities.stride + column] = weight * at_end;
+            }
+        }
+        Ok(())
     }
 }
 

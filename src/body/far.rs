@@ -1,8 +1,7 @@
 //! The flow of both layers away from the surface: direct sums over points.
 //!
 //! With the trapezoidal rule in the azimuth and Gauss–Legendre panels along the curve both converge exponentially in the number of
-//! points per distance; where they do not resolve a panel's action, the [close](super::close) fields take over. Both have pressure and
-//! gradient from the same derivatives of the density: only so may a surface be shared between them.
+//! points per distance; where they do not resolve a panel's action, the [close](super::close) fields take over.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -107,13 +106,13 @@ fn sample(discretization: &Discretization, densities: &Densities, count: usize) 
     let nodes = discretization.nodes();
     let fft: Arc<dyn Fft<f64>> = FftPlanner::new().plan_fft_inverse(count);
     let mut ring = vec![Complex64::default(); count];
-    let mut components = vec![[0.0; DENSITIES]; count];
+    let mut components = vec![[0.0; 6]; count];
     let mut points = SurfacePoints::with_capacity(nodes.len() * count);
     let rotation: Vec<(f64, f64)> = (0..count)
         .map(|l| (2.0 * PI * l as f64 / count as f64).sin_cos())
         .collect();
     for (k, node) in nodes.iter().enumerate() {
-        for j in 0..DENSITIES {
+        for j in 0..6 {
             spectrum(densities, k, j, &mut ring);
             fft.process(&mut ring);
             for (components, value) in components.iter_mut().zip(&ring) {
@@ -134,17 +133,11 @@ fn sample(discretization: &Discretization, densities: &Densities, count: usize) 
                 area * turned(radial, azimuthal, axial)
             };
             let [nu_r, nu_z] = node.normal;
-            let (around, along) = (turned(0.0, 1.0, 0.0), turned(nu_z, 0.0, -nu_r));
-            let (y_theta, y_t) = (density(2), density(3));
-            // tau_i = -eps_ijm (nu x grad)_m sigma_j.
-            let tau = around.cross(&y_theta) + along.cross(&y_t);
             points.push(SurfacePoint {
                 position: turned(node.r, 0.0, node.z),
                 normal: turned(nu_r, 0.0, nu_z),
                 double: density(0),
                 single: density(1),
-                moved: density(1) + 2.0 * tau,
-                curl: around * y_theta.transpose() + along * y_t.transpose(),
             });
         }
         if (k + 1) % discretization.order() == 0 {
@@ -154,15 +147,13 @@ fn sample(discretization: &Discretization, densities: &Densities, count: usize) 
     points
 }
 
-/// The complex spectrum of density `j` at node `k`; its inverse transform has the density as real part.
+/// The complex spectrum of density `j` (of both layers) at node `k`; its inverse transform has the density as real part.
 fn spectrum(densities: &Densities, k: usize, j: usize, ring: &mut [Complex64]) {
-    // The first family has sin for the azimuthal components, but for the others of y^t.
-    let is_sin = (j % 3 == 1) != (j >= 9);
     ring.fill(Complex64::default());
     for (n, ring) in ring.iter_mut().enumerate().take(densities.modes()) {
         let [first, second] = [0, 1].map(|f| densities.row((2 * n + f) * DENSITIES + j)[k]);
         // Re((c - i s) e^{i n theta}) = c cos + s sin.
-        *ring = if is_sin {
+        *ring = if j % 3 == 1 {
             Complex64::new(-second, -first)
         } else {
             Complex64::new(first, -second)

@@ -109,17 +109,17 @@ impl<'a> Flow<'a> {
         let discretization = self.discretization;
         let (close, densities) = (self.close()?, self.densities());
         let nodes = discretization.nodes();
+        let panels: Vec<usize> = (0..discretization.panels().len()).collect();
         let rings: Vec<Vec<f64>> = nodes
             .par_iter()
             .map_init(close::Buffers::default, |buffers, node| {
                 let sight = limit(discretization, Sight::on(node), node.normal, side);
-                let panels = 0..discretization.panels().len();
                 close.fields(
                     discretization,
                     densities,
                     &VelocityPressureGradient,
                     &sight,
-                    panels,
+                    &panels,
                     buffers,
                 )
             })
@@ -240,13 +240,27 @@ impl<'a> Flow<'a> {
         let sight = self.sight(point);
         let count = discretization.panels().len();
         let is_kept = |&panel: &usize| separation.is_kept(discretization, point, panel);
-        let near = (0..count).filter(|panel| !is_kept(panel));
+        let near: Vec<usize> = (0..count).filter(|panel| !is_kept(panel)).collect();
         let fields = if GRADIENT {
             let potential = VelocityPressureGradient;
-            close.fields(discretization, densities, &potential, &sight, near, buffers)?
+            close.fields(
+                discretization,
+                densities,
+                &potential,
+                &sight,
+                &near,
+                buffers,
+            )?
         } else {
             let potential = VelocityPressure;
-            close.fields(discretization, densities, &potential, &sight, near, buffers)?
+            close.fields(
+                discretization,
+                densities,
+                &potential,
+                &sight,
+                &near,
+                buffers,
+            )?
         };
         let mut found = Vec::with_capacity(ring.len());
         for &index in ring {

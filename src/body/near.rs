@@ -346,7 +346,7 @@ fn next_door(discretization: &Discretization, home: usize, panel: usize) -> Opti
 }
 
 /// The offsets of a panel's ends from the foot in the curve's parameter, across the seam of a closed curve if that is shorter.
-fn offsets(discretization: &Discretization, sight: &Sight, panel: usize) -> [f64; 2] {
+pub(crate) fn offsets(discretization: &Discretization, sight: &Sight, panel: usize) -> [f64; 2] {
     let panel = discretization.panel(panel);
     let panels = discretization.panels().as_slice();
     let period = panels[panels.len() - 1].end - panels[0].start;

@@ -1,6 +1,6 @@
 //! What `benches/` reach the kernels by; no part of the library's interface.
 
-use nalgebra::{Matrix3, Point3, Vector3};
+use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
 
 use super::{
@@ -73,8 +73,6 @@ impl DirectSum {
                 normal: Vector3::z(),
                 double: Vector3::x(),
                 single: Vector3::x(),
-                moved: Vector3::x(),
-                curl: Matrix3::zeros(),
             });
         }
         points.pad();

@@ -16,9 +16,6 @@ pub(crate) struct SurfacePoints {
     /// Densities times the point's share of the area.
     double: [Vec<f64>; 3],
     single: [Vec<f64>; 3],
-    moved: [Vec<f64>; 3],
-    /// Column after column.
-    curl: [Vec<f64>; 9],
 }
 
 /// Velocity and pressure at a point, for viscosity 1.
@@ -73,24 +70,16 @@ pub(crate) struct SurfacePoint {
     /// Densities times the point's share of the area.
     pub double: Vector3<f64>,
     pub single: Vector3<f64>,
-    /// $\varrho + 2\tau$ of the [close](super::close) kernels.
-    pub moved: Vector3<f64>,
-    /// $(\nu\times\nabla)_m \sigma_i$ in row $m$ and column $i$.
-    pub curl: Matrix3<f64>,
 }
 
 impl SurfacePoints {
     pub fn with_capacity(count: usize) -> Self {
-        fn buffers<const N: usize>(count: usize) -> [Vec<f64>; N] {
-            std::array::from_fn(|_| Vec::with_capacity(count + PADDING))
-        }
+        let buffers = || std::array::from_fn(|_| Vec::with_capacity(count + PADDING));
         Self {
-            position: buffers(count),
-            normal: buffers(count),
-            double: buffers(count),
-            single: buffers(count),
-            moved: buffers(count),
-            curl: buffers(count),
+            position: buffers(),
+            normal: buffers(),
+            double: buffers(),
+            single: buffers(),
         }
     }
 
@@ -100,10 +89,6 @@ impl SurfacePoints {
             self.normal[k].push(point.normal[k]);
             self.double[k].push(point.double[k]);
             self.single[k].push(point.single[k]);
-            self.moved[k].push(point.moved[k]);
-        }
-        for (buffer, value) in self.curl.iter_mut().zip(&point.curl) {
-            buffer.push(*value);
         }
     }
 
@@ -115,8 +100,6 @@ impl SurfacePoints {
                 normal: Vector3::zeros(),
                 double: Vector3::zeros(),
                 single: Vector3::zeros(),
-                moved: Vector3::zeros(),
-                curl: Matrix3::zeros(),
             });
         }
     }
@@ -164,8 +147,6 @@ impl<'a, const GRADIENT: bool> WithSimd for Sum<'a, GRADIENT> {
         let [nx, ny, nz] = points.normal.each_ref().map(registers);
         let [fx, fy, fz] = points.double.each_ref().map(registers);
         let [gx, gy, gz] = points.single.each_ref().map(registers);
-        let [mx, my, mz] = points.moved.each_ref().map(registers);
-        let curls = points.curl.each_ref().map(registers);
         let mut velocity = [splat(0.0); 3];
         let mut pressure = splat(0.0);
         let mut gradient = [[splat(0.0); 3]; 3];
@@ -184,36 +165,27 @@ impl<'a, const GRADIENT: bool> WithSimd for Sum<'a, GRADIENT> {
             let inv2 = one / dot(&d, &d);
             let inv = inv2.sqrt();
             let inv3 = inv * inv2;
-            let m = [Lanes(simd, mx[i]), Lanes(simd, my[i]), Lanes(simd, mz[i])];
-            let (df, dg, dn) = (dot(&d, &f), dot(&d, &g), dot(&d, &n));
+            let (df, dg, dn, nf) = (dot(&d, &f), dot(&d, &g), dot(&d, &n), dot(&n, &f));
             // u = (6 (d.f)(d.n)/|d|^5 + (d.g)/|d|^3) d + g/|d|.
-            let along_d = inv3 * (6.0 * df * dn * inv2 + dg);
+            let both = 6.0 * df * dn * inv2;
+            let along_d = inv3 * (both + dg);
             for k in 0..3 {
                 velocity[k] = velocity[k] + along_d.mul_add(d[k], inv * g[k]);
             }
-            let along_m = inv3 * dot(&d, &m);
-            pressure = pressure + (along_m + along_m);
+            // p = 4 (-n.f + 3 (d.f)(d.n)/|d|^2)/|d|^3 + 2 (d.g)/|d|^3.
+            pressure = inv3.mul_add(2.0 * (both + dg) - 4.0 * nf, pressure);
             if GRADIENT {
-                // du_k/dx_j = d_k w_j + (d.m) delta_kj/|d|^3 - g_k d_j/|d|^3 - 2 (d x curl_k)_j/|d|^3.
-                let radial = -3.0 * along_m * inv2;
-                let away = [inv3 * d[0], inv3 * d[1], inv3 * d[2]];
-                for k in 0..3 {
-                    let [cx, cy, cz] = [
-                        Lanes(simd, curls[3 * k][i]),
-                        Lanes(simd, curls[3 * k + 1][i]),
-                        Lanes(simd, curls[3 * k + 2][i]),
-                    ];
-                    let cross = [
-                        away[1] * cz - away[2] * cy,
-                        away[2] * cx - away[0] * cz,
-                        away[0] * cy - away[1] * cx,
-                    ];
-                    for j in 0..3 {
-                        let w = radial.mul_add(d[j], inv3 * m[j]);
-                        let rest = away[j] * g[k] + (cross[j] + cross[j]);
-                        gradient[k][j] = d[k].mul_add(w, gradient[k][j] - rest);
+                // du_k/dx_j = d_k w_j + along_d delta_kj - g_k d_j/|d|^3.
+                let inv5 = 6.0 * inv3 * inv2;
+                let (along_f, along_n) = (dn * inv5, df * inv5);
+                let radial = -(inv3 * inv2) * (5.0 * both + 3.0 * dg);
+                for j in 0..3 {
+                    let w = radial * d[j] + inv3 * g[j] + along_f * f[j] + along_n * n[j];
+                    let away = inv3 * d[j];
+                    for k in 0..3 {
+                        gradient[k][j] = d[k].mul_add(w, gradient[k][j] - away * g[k]);
                     }
-                    gradient[k][k] = gradient[k][k] + along_m;
+                    gradient[j][j] = gradient[j][j] + along_d;
                 }
             }
         }

@@ -12,11 +12,11 @@
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
-use panel_quadrature::QuadratureError;
+use panel_quadrature::{PanelBasis, QuadratureError};
 
 use super::densities::Densities;
 use super::discretization::{Discretization, Node};
-use super::near::{NearNodes, NearRules, Sight, offsets};
+use super::near::{NearNodes, NearRules, Sight, Stretch, offsets, reference};
 use crate::curve::{Meridian, Topology};
 use crate::kernel::{
     DENSITIES, Modes, Potential, RingDensities, RingFields, SourceRings, TargetRing, Workspace,
@@ -37,6 +37,8 @@ pub(super) struct Buffers {
     /// The ends of panels that keep their circle.
     rings: Vec<(usize, End)>,
     gathered: Vec<f64>,
+    /// Densities at the few nodes of a stretch.
+    table: Vec<f64>,
     densities: RingDensities,
     workspace: Workspace,
     fields: RingFields,
@@ -76,24 +78,33 @@ impl CloseFlow {
         let order = discretization.order() as f64;
         let reach = |panel: usize| discretization.arc_length(panel) / order;
         for &panel in panels {
-            let near = &mut buffers.near;
+            let order = discretization.order();
+            let on_panel = densities.on_panel(panel, order);
             if self.rules.is_far(discretization, point, panel) {
+                let near = &mut buffers.near;
                 near.take_own_nodes(discretization, sight, panel);
+                self.add_nodes(potential, target, on_panel, buffers);
             } else {
-                self.rules
-                    .fill_off_curve(discretization, sight, panel, near)?;
-            }
-            for first in (0..buffers.near.nodes.len()).step_by(BLOCK) {
-                buffers.sources.clear();
-                let near = &buffers.near;
-                let block = near.nodes.iter().zip(&near.separation);
-                for (node, &separation) in block.skip(first).take(BLOCK) {
-                    buffers.sources.push(node.r, separation, node.normal);
+                let mut table = std::mem::take(&mut buffers.table);
+                for (stretch, is_inner) in self.rules.stretches(discretization, sight, panel) {
+                    let near = &mut buffers.near;
+                    self.rules
+                        .fill_off_curve(discretization, sight, panel, &stretch, near)?;
+                    let values = if is_inner {
+                        let whole = offsets(discretization, sight, panel);
+                        resample(
+                            discretization.basis(),
+                            whole,
+                            &stretch,
+                            on_panel,
+                            &mut table,
+                        )?
+                    } else {
+                        on_panel
+                    };
+                    self.add_nodes(potential, target, values, buffers);
                 }
-                self.engine
-                    .arrange(target, &buffers.sources, &mut buffers.workspace);
-                buffers.interpolate(discretization, densities, panel, first);
-                self.add(potential, target, buffers);
+                buffers.table = table;
             }
             for (end, neighbour) in [
                 (End::Start, (panel + count - 1) % count),
@@ -115,6 +126,28 @@ impl CloseFlow {
         Ok(buffers.fields.values().collect())
     }
 
+    /// Adds the fields of the near nodes, whose densities are interpolated from `values` (values at some nodes, column after column).
+    fn add_nodes<const K: usize, const FIELDS: usize>(
+        &self,
+        potential: &impl Potential<K, FIELDS>,
+        target: TargetRing,
+        values: MatRef<'_, f64>,
+        buffers: &mut Buffers,
+    ) {
+        for first in (0..buffers.near.nodes.len()).step_by(BLOCK) {
+            buffers.sources.clear();
+            let near = &buffers.near;
+            let block = near.nodes.iter().zip(&near.separation);
+            for (node, &separation) in block.skip(first).take(BLOCK) {
+                buffers.sources.push(node.r, separation, node.normal);
+            }
+            self.engine
+                .arrange(target, &buffers.sources, &mut buffers.workspace);
+            buffers.interpolate(values, first);
+            self.add(potential, target, buffers);
+        }
+    }
+
     fn add<const K: usize, const FIELDS: usize>(
         &self,
         potential: &impl Potential<K, FIELDS>,
@@ -132,6 +165,32 @@ impl CloseFlow {
     }
 }
 
+/// The densities on a stretch, from those at the panel's nodes.
+fn resample<'t>(
+    basis: &PanelBasis,
+    whole: [f64; 2],
+    stretch: &Stretch<'_>,
+    on_panel: MatRef<'_, f64>,
+    table: &'t mut Vec<f64>,
+) -> Result<MatRef<'t, f64>, QuadratureError> {
+    let [start, end] = stretch.domain;
+    let places: Vec<f64> = (stretch.basis.nodes().iter())
+        .map(|x| reference(start + 0.5 * (end - start) * (1.0 + x), whole))
+        .collect();
+    let rows = basis.interpolation_matrix(&places)?;
+    let (count, columns) = (places.len(), on_panel.ncols());
+    table.resize(count * columns, 0.0);
+    matmul(
+        MatMut::from_column_major_slice_mut(table, count, columns),
+        Accum::Replace,
+        rows.as_ref(),
+        on_panel,
+        1.0,
+        Par::Seq,
+    );
+    Ok(MatRef::from_column_major_slice(table, count, columns))
+}
+
 /// An end of a panel.
 #[derive(Clone, Copy, Debug)]
 enum End {
@@ -141,15 +200,8 @@ enum End {
 
 impl Buffers {
     /// The densities at the sources, which begin with near node `first`, in the order of the workspace.
-    fn interpolate(
-        &mut self,
-        discretization: &Discretization,
-        densities: &Densities,
-        panel: usize,
-        first: usize,
-    ) {
-        let (order, nodes) = (discretization.order(), discretization.nodes().len());
-        let (rows, values) = (densities.rows(), densities.values());
+    fn interpolate(&mut self, values: MatRef<'_, f64>, first: usize) {
+        let (order, rows) = (values.nrows(), values.ncols());
         let columns = &self.workspace.order;
         self.densities.resize(rows, self.workspace.columns());
         let stride = self.densities.stride;
@@ -176,8 +228,7 @@ impl Buffers {
                 .subrows_mut(place, length),
                 Accum::Replace,
                 MatRef::from_column_major_slice(&self.gathered, order, length).transpose(),
-                MatRef::from_column_major_slice_with_stride(values, nodes, rows, nodes)
-                    .subrows(panel * order, order),
+                values,
                 1.0,
                 Par::Seq,
             );

@@ -1,5 +1,6 @@
 //! The densities of both layers and the tangential derivatives of the double layer's, at the nodes.
 
+use faer::MatRef;
 use panel_quadrature::QuadratureError;
 
 use super::discretization::Discretization;
@@ -51,9 +52,15 @@ impl Densities {
         2 * self.modes * DENSITIES
     }
 
-    /// All rows, one after the other.
-    pub fn values(&self) -> &[f64] {
-        &self.values
+    /// The values at the nodes of a panel, a column for each row.
+    pub fn on_panel(&self, panel: usize, order: usize) -> MatRef<'_, f64> {
+        MatRef::from_column_major_slice_with_stride(
+            &self.values,
+            self.nodes,
+            self.rows(),
+            self.nodes,
+        )
+        .subrows(panel * order, order)
     }
 
     /// The values at the nodes of one row.

@@ -13,7 +13,7 @@
 //!   that makes a number of parts that grows with $\log(1/d)$.
 
 use panel_quadrature::kolm_rokhlin::{KolmRokhlin, Side};
-use panel_quadrature::{GaussLegendre, LogEndpoint, QuadratureError};
+use panel_quadrature::{GaussLegendre, LogEndpoint, PanelBasis, QuadratureError};
 
 use super::discretization::{Discretization, Node};
 use crate::curve::{Meridian, Topology};
@@ -37,6 +37,10 @@ const DECAY_LENGTHS_PER_NODE: f64 = 2.5;
 /// Where a part is cut whose nearest point to the singularity is its end, as a fraction from there: what is left has
 /// $\varrho + 1/\varrho = 3.5$.
 const CUT: f64 = 0.27;
+/// Next to a point that is very close, as far as this fraction of half a panel, a panel's polynomials are interpolated from so many
+/// nodes first: with 8, what is lost of degree 8 is 4e-13 of its coefficient, of degree 15 1e-7 of its (which is the panel's own error).
+const INNER_REACH: f64 = 1.0 / 32.0;
+const INNER: usize = 8;
 /// Cuts after which a part is taken as it is: it is then of the size of rounding errors.
 const DEEPEST: usize = 52;
 
@@ -95,6 +99,17 @@ struct Part {
     depth: usize,
 }
 
+/// A stretch of a panel, by offsets from the foot in the curve's parameter.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stretch<'b> {
+    /// Where it is.
+    pub range: [f64; 2],
+    /// Where the nodes are that densities are interpolated from: the whole panel, or the stretch itself.
+    pub domain: [f64; 2],
+    /// Those nodes.
+    pub basis: &'b PanelBasis,
+}
+
 /// A place on a panel: in its reference interval, and as an offset from the foot in the curve's parameter.
 #[derive(Clone, Copy, Debug)]
 struct Place {
@@ -106,6 +121,8 @@ struct Place {
 #[derive(Debug)]
 pub(crate) struct NearRules {
     gauss: GaussLegendre,
+    /// Nodes of the stretch next to a point that is very close.
+    inner: PanelBasis,
     log_endpoint: LogEndpoint,
     far: f64,
     /// What the rule of [`GAUSS`] nodes resolves, and the one of [`LOG_ENDPOINT`] nodes (whose degree is half a Gauss rule's).
@@ -145,6 +162,7 @@ impl NearRules {
         Ok(Self {
             longest: DECAY_LENGTHS / n_max.max(1) as f64,
             gauss: GaussLegendre::new(GAUSS)?,
+            inner: PanelBasis::new(INNER)?,
             log_endpoint: LogEndpoint::new(LOG_ENDPOINT)?,
             far: far_enough(order),
             gauss_far: far_enough(GAUSS),
@@ -199,24 +217,68 @@ impl NearRules {
                         ds: half * node.offset,
                     };
                     near.push(discretization, &sight, panel, place, half * node.weight);
-                    near.interpolate(discretization, place.t)?;
+                    near.interpolate(discretization.basis(), place.t)?;
                 }
                 return Ok(());
             }
         }
-        self.cut(discretization, &sight, panel, near)
+        let whole = offsets(discretization, &sight, panel);
+        let stretch = Stretch {
+            range: whole,
+            domain: whole,
+            basis: discretization.basis(),
+        };
+        self.cut(discretization, &sight, panel, &stretch, near)
     }
 
-    /// Fills `near` with nodes on `panel` that resolve its action on a point off the curve.
+    /// The stretches of a panel for a point off the curve, and whether each has its own few nodes: the one next to a point that is very
+    /// close does.
+    pub fn stretches<'b>(
+        &'b self,
+        discretization: &'b Discretization,
+        sight: &Sight,
+        panel: usize,
+    ) -> impl Iterator<Item = (Stretch<'b>, bool)> + use<'b> {
+        let domain = offsets(discretization, sight, panel);
+        let [first, last] = domain;
+        let reach = INNER_REACH * 0.5 * discretization.panel(panel).length();
+        let [start, end] = [first.max(-reach), last.min(reach)];
+        let close =
+            sight.gap.r.hypot(sight.gap.z) <= 0.25 * INNER_REACH * discretization.arc_length(panel);
+        let outer = |range: [f64; 2]| Stretch {
+            range,
+            domain,
+            basis: discretization.basis(),
+        };
+        let inner = Stretch {
+            range: [start, end],
+            domain: [start, end],
+            basis: &self.inner,
+        };
+        let stretches = if close && start < end {
+            [
+                Some((outer([first, start]), false)),
+                Some((inner, true)),
+                Some((outer([end, last]), false)),
+            ]
+        } else {
+            [Some((outer(domain), false)), None, None]
+        };
+        let stretches = stretches.into_iter().flatten();
+        stretches.filter(|(stretch, _)| stretch.range[0] < stretch.range[1])
+    }
+
+    /// Fills `near` with nodes on a stretch of `panel` that resolve its action on a point off the curve.
     pub fn fill_off_curve(
         &self,
         discretization: &Discretization,
         sight: &Sight,
         panel: usize,
+        stretch: &Stretch<'_>,
         near: &mut NearNodes,
     ) -> Result<(), QuadratureError> {
         near.clear();
-        self.cut(discretization, sight, panel, near)
+        self.cut(discretization, sight, panel, stretch, near)
     }
 
     fn cut(
@@ -224,11 +286,12 @@ impl NearRules {
         discretization: &Discretization,
         sight: &Sight,
         panel: usize,
+        stretch: &Stretch<'_>,
         near: &mut NearNodes,
     ) -> Result<(), QuadratureError> {
         let curve = discretization.curve();
-        let [first, last] = offsets(discretization, sight, panel);
-        let half = 0.5 * discretization.panel(panel).length();
+        let whole = offsets(discretization, sight, panel);
+        let [first, last] = stretch.range;
         let on_curve = sight.gap.r == 0.0 && sight.gap.z == 0.0;
         let target = sight.point();
         let mut parts = std::mem::take(&mut near.parts);
@@ -266,13 +329,9 @@ impl NearRules {
             if resolved || depth >= DEEPEST {
                 let width = end - start;
                 let mut push = |ds: f64, weight: f64| {
-                    let t = if ds - first < last - ds {
-                        (ds - first) / half - 1.0
-                    } else {
-                        1.0 - (last - ds) / half
-                    };
+                    let t = reference(ds, whole);
                     near.push(discretization, sight, panel, Place { t, ds }, weight);
-                    near.interpolate(discretization, t)
+                    near.interpolate(stretch.basis, reference(ds, stretch.domain))
                 };
                 if at_target {
                     let sign = if start == 0.0 { 1.0 } else { -1.0 };
@@ -314,6 +373,16 @@ impl NearRules {
         }
         near.parts = parts;
         Ok(())
+    }
+}
+
+/// Where an offset lies in the reference interval of a domain, from the nearer end.
+pub(crate) fn reference(ds: f64, [start, end]: [f64; 2]) -> f64 {
+    let half = 0.5 * (end - start);
+    if ds - start < end - ds {
+        (ds - start) / half - 1.0
+    } else {
+        1.0 - (end - ds) / half
     }
 }
 
@@ -401,14 +470,10 @@ impl NearNodes {
             .push([sight.gap.r - chord.r, sight.gap.z - chord.z]);
     }
 
-    /// The panel's interpolation to `t` of its reference interval.
-    fn interpolate(
-        &mut self,
-        discretization: &Discretization,
-        t: f64,
-    ) -> Result<(), QuadratureError> {
-        let row = self.next_row(discretization.order());
-        discretization.basis().interpolation_row(t, row)
+    /// The interpolation to `t` of the reference interval.
+    fn interpolate(&mut self, basis: &PanelBasis, t: f64) -> Result<(), QuadratureError> {
+        let row = self.next_row(basis.order());
+        basis.interpolation_row(t, row)
     }
 
     /// The panel's interpolation to `offset` from its node `target`.

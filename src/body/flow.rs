@@ -2,7 +2,8 @@
 //!
 //! Points are sorted by what each panel needs: far ones are [summed directly](super::far), for close ones the panels that the sum
 //! does not resolve are done [mode by mode](super::close), at a cost that grows with the logarithm of the distance. On the surface the flow
-//! is the limit from one side, taken [`LIMIT`] body sizes away from it, where it differs from the limit by less than rounding.
+//! is the limit from one side, taken 1e-14 body sizes away, where the flow differs from it by rounding. A point is on the surface if it is nearer
+//! than [`ON_SURFACE`].
 
 use std::sync::OnceLock;
 
@@ -17,7 +18,7 @@ use super::far::{FarFlow, Separation};
 use super::layers::Layers;
 use super::near::Sight;
 use super::surface::SurfaceModes;
-use crate::curve::Meridian;
+use crate::curve::{Meridian, ON_SURFACE};
 use crate::kernel::{FlowAt, FlowGradientAt, VelocityPressure, VelocityPressureGradient};
 
 /// The flow of densities on a body, for viscosity 1, in the body's frame.
@@ -54,8 +55,8 @@ pub enum FlowError {
     Quadrature(#[from] QuadratureError),
 }
 
-/// Distance from the surface, in body sizes, below which a point is on it; and at which the limits are taken.
-pub const LIMIT: f64 = 1e-14;
+/// Distance from the surface, in body sizes, at which the limits are taken.
+const LIMIT: f64 = 1e-14;
 
 impl<'a> Flow<'a> {
     /// The flow of densities on the nodes of `discretization`; on the surface, the limit from outside.
@@ -277,7 +278,7 @@ impl<'a> Flow<'a> {
     fn sight(&self, point: Meridian) -> Sight {
         let sight = close::sight(self.discretization, point);
         let distance = sight.gap.r.hypot(sight.gap.z);
-        if distance >= LIMIT * self.discretization.size() {
+        if distance > ON_SURFACE * self.discretization.size() {
             return sight;
         }
         let tangent = self.discretization.curve().tangent(sight.s);

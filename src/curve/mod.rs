@@ -55,7 +55,7 @@ pub use chord::chord_by_quadrature;
 pub use error::{CurveError, LARGEST_ASPECT, LONGEST, SHORTEST};
 pub use function::FunctionCurve;
 pub use measures::{arc_length, surface_area, volume};
-pub use outline::{Outline, contains, distance};
+pub use outline::{ON_SURFACE, Outline, contains, distance};
 pub use panels::{MOST_PANELS, Panel, Panels};
 pub use polar::Polar;
 pub use profile::{MOST_POINTS, Profile};

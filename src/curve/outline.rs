@@ -10,6 +10,9 @@ const TURN: f64 = 0.05;
 /// Most corners; beyond them the polygon is no longer refined.
 const MOST_CORNERS: usize = 1_000_000;
 
+/// Distance from the surface, in units of the body's size, up to which a point is on it: rounding of its coordinates.
+pub const ON_SURFACE: f64 = 1e-13;
+
 /// A curve with an adaptive polygon on it, to answer many questions about the body.
 #[derive(Clone, Debug)]
 pub struct Outline<'a, C: GeneratingCurve + ?Sized> {
@@ -18,6 +21,8 @@ pub struct Outline<'a, C: GeneratingCurve + ?Sized> {
     corners: Vec<Meridian>,
     /// Bound of the distance between the curve and the polygon.
     slack: f64,
+    /// Up to which distance from the curve a point is on it.
+    on_surface: f64,
 }
 
 impl<'a, C: GeneratingCurve + ?Sized> Outline<'a, C> {
@@ -46,6 +51,7 @@ impl<'a, C: GeneratingCurve + ?Sized> Outline<'a, C> {
             parameters: vec![starts[0]],
             corners: vec![corners[0].point],
             slack: 4.0 * SAG * size,
+            on_surface: 0.5 * ON_SURFACE * size,
         };
         // Depth first, so that the corners come out in order.
         for pair in corners.windows(2) {
@@ -77,7 +83,7 @@ impl<'a, C: GeneratingCurve + ?Sized> Outline<'a, C> {
         &self.parameters
     }
 
-    /// Whether the point lies in the body; a point at r < 0 stands for its mirror image.
+    /// Whether the point lies in the body, and not [on its surface](ON_SURFACE); a point at r < 0 stands for its mirror image.
     pub fn contains(&self, point: Meridian) -> bool {
         let point = Meridian {
             r: point.r.abs(),
@@ -88,7 +94,10 @@ impl<'a, C: GeneratingCurve + ?Sized> Outline<'a, C> {
             return inside;
         }
         // So near the curve the side of the nearest tangent decides.
-        let (_, s) = self.nearest(point);
+        let (distance, s) = self.nearest(point);
+        if distance <= self.on_surface {
+            return false;
+        }
         let (foot, tangent) = (self.curve.point(s), self.curve.tangent(s));
         let outward = -(point.r - foot.r) * tangent.z + (point.z - foot.z) * tangent.r;
         outward < 0.0

@@ -339,10 +339,12 @@ impl<'a> Setting<'a> {
                 force,
                 torque,
                 stresslet: (viscosity * stresslet).transpose().into(),
+                stresslet_error_estimate: viscosity * answer.further_errors.stresslet,
                 power: viscosity * power,
             }],
             probes: probes.collect(),
             error_estimate: answer.error_estimate,
+            pressure_error_estimate: viscosity * answer.further_errors.pressure,
             iterations: 0,
             unknowns: answer.unknowns,
             discretization: vec![Discretization {

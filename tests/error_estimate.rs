@@ -6,7 +6,7 @@ use std::sync::Arc;
 use axistokes::nalgebra::{Matrix3, Point3, Vector3};
 use axistokes::{
     Answer, Biconcave, Capsule, GeneratingCurve, LinearFlow, Meridian, Motion, Outline, Panels,
-    Polar, Problem, Resolution, RigidMotion, Silent, Spheroid, Stokeslet, Torus, Wrench,
+    Polar, Problem, Resolution, RigidMotion, Silent, Spheroid, Stokeslet, Torus, Wrench, squirmer,
 };
 use fastrand::Rng;
 
@@ -282,4 +282,50 @@ fn bounds_the_true_error_in_shear() {
         }
     }
     ratios.check();
+}
+
+/// A squirmer's flow in closed form (Blake 1971): $p = -2 b_2 P_2(\cos\theta)/r^3$ and the stresslet $4\pi b_2 (e e - I/3)$, with coarse panels.
+#[test]
+fn pressures_and_stresslets_are_within_their_estimates() {
+    let slip = squirmer(&[1.5, 3.0]);
+    let targets: Vec<Point3<f64>> = (0..40)
+        .map(|k| {
+            let theta = 0.08 * f64::from(k);
+            let r = 1.0 + 10f64.powf(-0.15 * f64::from(k));
+            Point3::new(r * theta.sin(), 0.0, r * theta.cos())
+        })
+        .collect();
+    for panels in [1, 2, 3, 4] {
+        let sphere = std::sync::Arc::new(Spheroid::sphere(1.0).expect("a sphere"));
+        let resolution = Resolution {
+            panels: Panels::equal_arcs(&*sphere, panels).expect("panels"),
+            order: 10,
+            modes: 1,
+        };
+        let answer = Problem {
+            motion: Motion::Free(Wrench::zero()),
+            slip: Some(&slip),
+            targets: &targets,
+            ..Problem::new(sphere)
+        }
+        .at_resolution(resolution, &Silent)
+        .expect("an answer");
+        let pressure = (targets.iter().zip(&answer.flow))
+            .map(|(x, at)| {
+                let r = x.coords.norm();
+                let p2 = 1.5 * (x.z / r).powi(2) - 0.5;
+                (at.pressure + 6.0 * p2 / r.powi(3)).abs()
+            })
+            .fold(0.0, f64::max);
+        let e = Vector3::z();
+        let exact = (e * e.transpose() - Matrix3::identity() / 3.0) * 12.0 * std::f64::consts::PI;
+        let stresslet = (answer.body_flow.stresslet() - exact).norm();
+        let estimates = answer.further_errors;
+        println!(
+            "{panels} panels: pressure {pressure:.1e} of {:.1e}, stresslet {stresslet:.1e} of {:.1e}",
+            estimates.pressure, estimates.stresslet
+        );
+        assert!(pressure <= estimates.pressure && estimates.pressure <= 100.0 * pressure);
+        assert!(stresslet <= estimates.stresslet);
+    }
 }

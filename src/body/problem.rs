@@ -102,6 +102,8 @@ pub struct Answer {
     /// Forces and rigid velocities may vanish by symmetry: below a hundredth of $6\pi$ times size and largest speed, and below a
     /// hundredth of the largest speed, they count relative to that.
     pub error_estimate: f64,
+    /// Estimated absolute errors of what the other estimate does not cover.
+    pub further_errors: FurtherErrors,
     /// The resolution it was computed with.
     pub resolution: Resolution,
     /// Unknowns of all modes.
@@ -111,6 +113,15 @@ pub struct Answer {
     pub largest_speed: f64,
     /// How long things took.
     pub timings: Timings,
+}
+
+/// Estimated absolute errors, for viscosity 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FurtherErrors {
+    /// Of the pressures at the targets.
+    pub pressure: f64,
+    /// Of the stresslet, in the Frobenius norm.
+    pub stresslet: f64,
 }
 
 /// Wall-clock seconds: the stages of the reported solution, and everything else together.
@@ -283,6 +294,7 @@ impl<'a> Problem<'a> {
         };
         let check = self.solve(&finer, evaluation, progress)?;
         let difference = solution.difference(&check);
+        let further_errors = solution.further_errors(&check);
         drop(check);
         let BodyFlow {
             discretization,
@@ -296,11 +308,12 @@ impl<'a> Problem<'a> {
             _ => &layers.double,
         };
         let unresolved = unresolved_panels(discretization, &[density])?;
+        let errors = (error_estimate, further_errors);
         Ok(Round {
             panels: resolution.panels.clone(),
             unresolved,
             error_estimate,
-            answer: solution.answer(resolution, error_estimate, start.elapsed().as_secs_f64()),
+            answer: solution.answer(resolution, errors, start.elapsed().as_secs_f64()),
         })
     }
 
@@ -528,7 +541,31 @@ impl Solution {
         relative(flow, self.largest_speed).max(wrench).max(motion)
     }
 
-    fn answer(self, resolution: Resolution, error_estimate: f64, estimate: f64) -> Answer {
+    /// The errors that the solution which checks this one lets expect, with what rounding leaves.
+    fn further_errors(&self, check: &Self) -> FurtherErrors {
+        let discretization = &self.body_flow.discretization;
+        let estimate = |difference: f64, scale: f64| {
+            scale * error_estimate(discretization, difference / scale.max(f64::MIN_POSITIVE))
+        };
+        let pressures = self.flow.iter().zip(&check.flow);
+        let (difference, scale) =
+            pressures.fold((0.0f64, 0.0f64), |(difference, scale), (a, b)| {
+                let (off, size) = ((a.pressure - b.pressure).abs(), b.pressure.abs());
+                (difference.max(off), scale.max(size))
+            });
+        let [a, b] = [self, check].map(|solution| solution.body_flow.stresslet());
+        FurtherErrors {
+            pressure: estimate(difference, scale),
+            stresslet: estimate((a - b).norm(), b.norm()),
+        }
+    }
+
+    fn answer(
+        self,
+        resolution: Resolution,
+        (error_estimate, further_errors): (f64, FurtherErrors),
+        estimate: f64,
+    ) -> Answer {
         let Seconds { assemble, factor } = self.seconds;
         let timings = Timings {
             assemble,
@@ -544,6 +581,7 @@ impl Solution {
             flow: self.flow,
             body_flow: self.body_flow,
             error_estimate,
+            further_errors,
             resolution,
             largest_speed: self.largest_speed,
             timings,

@@ -12,6 +12,8 @@ pub struct Report {
     /// Estimated error: of the velocities at the probes relative to the largest speed imposed, and of forces,
     /// torques and rigid velocities relative to their largest value.
     pub error_estimate: f64,
+    /// Estimated error of the pressures at the probes, absolute.
+    pub pressure_error_estimate: f64,
     /// Iterations of the linear solver; 0 for a direct solve.
     pub iterations: usize,
     /// Unknowns of the linear system, all modes together.
@@ -38,6 +40,8 @@ pub struct BodyReport {
     pub torque: [f64; 3],
     /// Stresslet about the centre, row by row: symmetric, without trace.
     pub stresslet: [[f64; 3]; 3],
+    /// Its estimated error, absolute.
+    pub stresslet_error_estimate: f64,
     /// Rate of work that the surface does on the fluid.
     pub power: f64,
 }
@@ -107,6 +111,9 @@ impl Report {
             if !body.stresslet.iter().all(finite) {
                 return Some(format!("bodies[{i}].stresslet"));
             }
+            if !body.stresslet_error_estimate.is_finite() {
+                return Some(format!("bodies[{i}].stresslet_error_estimate"));
+            }
             if !body.power.is_finite() {
                 return Some(format!("bodies[{i}].power"));
             }
@@ -121,6 +128,9 @@ impl Report {
         }
         if !self.error_estimate.is_finite() {
             return Some("error_estimate".into());
+        }
+        if !self.pressure_error_estimate.is_finite() {
+            return Some("pressure_error_estimate".into());
         }
         let test = self.test.unwrap_or_default();
         if !(test.absolute_error.is_finite() && test.relative_error.is_finite()) {
@@ -162,6 +172,7 @@ mod tests {
             "discretization",
             "error_estimate",
             "iterations",
+            "pressure_error_estimate",
             "probes",
             "timings",
             "unknowns",

@@ -25,7 +25,7 @@ fn write_table(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
     }
     write_bodies(out, case, report)?;
     if !report.probes.is_empty() {
-        write_probes(out, &report.probes)?;
+        write_probes(out, &report.probes, report.pressure_error_estimate)?;
     }
     write_discretization(out, &report.discretization)?;
     let solve = match report.iterations {
@@ -109,14 +109,19 @@ fn write_bodies(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
             "power",
             number(answer.power)
         )?;
+        writeln!(
+            out,
+            "{:>6}  {:width$}  (stresslet: estimated error {:.1e})",
+            "", "", answer.stresslet_error_estimate
+        )?;
     }
     Ok(())
 }
 
-fn write_probes(out: &mut String, probes: &[ProbeReport]) -> fmt::Result {
+fn write_probes(out: &mut String, probes: &[ProbeReport], pressure_error: f64) -> fmt::Result {
     writeln!(
         out,
-        "\nprobes; total velocity, pressure vanishing at infinity"
+        "\nprobes; total velocity, pressure vanishing at infinity (estimated error of the pressures: {pressure_error:.1e})"
     )?;
     writeln!(
         out,

@@ -1,7 +1,7 @@
 //! Velocity, pressure, velocity gradient and stress at any point of space.
 //!
-//! Points are sorted by what each panel needs: far ones are [summed directly](super::far), for close ones the panels that the sum
-//! does not resolve are done [mode by mode](super::close), at a cost that grows with the logarithm of the distance. On the surface the flow
+//! Points are sorted by what each panel needs: far ones are summed directly (`far`), for close ones the panels that the sum
+//! does not resolve are done mode by mode (`close`), at a cost that grows with the logarithm of the distance. On the surface the flow
 //! is the limit from one side, taken 1e-14 body sizes away, where the flow differs from it by rounding. A point is on the surface if it is nearer
 //! than [`ON_SURFACE`].
 

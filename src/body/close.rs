@@ -302,6 +302,11 @@ pub(super) fn sight(discretization: &Discretization, point: Meridian) -> Sight {
     ];
     let closed = panels.topology() == Topology::Loop;
     let seen = |s: f64| {
+        let s = if closed {
+            s - (last - first) * ((s - first) / (last - first)).floor()
+        } else {
+            s
+        };
         let mut foot = curve.point(s);
         if !closed && foot.r < 0.1 * discretization.size() {
             let pole = if s - first < last - s { first } else { last };
@@ -324,18 +329,18 @@ pub(super) fn sight(discretization: &Discretization, point: Meridian) -> Sight {
         * discretization
             .panel(nearest / discretization.order())
             .length();
-    let mut found = seen(start);
+    let mut s = start;
+    let mut found = seen(s);
     // Gauss and Newton: the error shrinks by the distance over the radius of curvature each time.
     for _ in 0..STEPS {
         let tangent = curve.tangent(found.s);
         let square = tangent.r * tangent.r + tangent.z * tangent.z;
         let step = (found.gap.r * tangent.r + found.gap.z * tangent.z) / square;
-        let s = (found.s + step).clamp(start - reach, start + reach);
-        let s = if closed {
-            s - (last - first) * ((s - first) / (last - first)).floor()
-        } else {
-            s.clamp(first, last)
-        };
+        // Across the seam of a closed curve: only what is seen is put back into the period.
+        s = (s + step).clamp(start - reach, start + reach);
+        if !closed {
+            s = s.clamp(first, last);
+        }
         found = seen(s);
     }
     found

@@ -296,7 +296,8 @@ fn limit(discretization: &Discretization, sight: Sight, normal: [f64; 2], side: 
         Side::Interior => -distance,
     };
     let gap = Meridian {
-        r: signed * normal[0],
+        // At a pole the normal is along the axis up to rounding: not across it.
+        r: (signed * normal[0]).max(-sight.foot.r),
         z: signed * normal[1],
     };
     Sight { gap, ..sight }

@@ -92,11 +92,13 @@ impl SurfacePoints {
         }
     }
 
-    /// Completes the last register with points far away from everything, of no strength.
+    /// Completes the last register with copies of the last point, of no strength.
     pub fn pad(&mut self) {
-        while !self.position[0].len().is_multiple_of(PADDING) {
+        while !self.len().is_multiple_of(PADDING) {
+            let last = self.len() - 1;
+            let position = Vector3::from_fn(|k, _| self.position[k][last]);
             self.push(SurfacePoint {
-                position: Vector3::repeat(1e100),
+                position,
                 normal: Vector3::zeros(),
                 double: Vector3::zeros(),
                 single: Vector3::zeros(),
@@ -164,28 +166,30 @@ impl<'a, const GRADIENT: bool> WithSimd for Sum<'a, GRADIENT> {
             ];
             let inv2 = one / dot(&d, &d);
             let inv = inv2.sqrt();
-            let inv3 = inv * inv2;
-            let (df, dg, dn, nf) = (dot(&d, &f), dot(&d, &g), dot(&d, &n), dot(&n, &f));
-            // u = (6 (d.f)(d.n)/|d|^5 + (d.g)/|d|^3) d + g/|d|.
-            let both = 6.0 * df * dn * inv2;
-            let along_d = inv3 * (both + dg);
+            // The direction e = d/|d|: zero where |d|^2 overflows, and with it all that decays faster than 1/|d|.
+            let e = [inv * d[0], inv * d[1], inv * d[2]];
+            let (ef, eg, en, nf) = (dot(&e, &f), dot(&e, &g), dot(&e, &n), dot(&n, &f));
+            // u = (6 (e.f)(e.n)/|d|^2 + (e.g)/|d|) e + g/|d|.
+            let both = 6.0 * ef * en * inv;
+            let along_e = inv * (both + eg);
             for k in 0..3 {
-                velocity[k] = velocity[k] + along_d.mul_add(d[k], inv * g[k]);
+                velocity[k] = velocity[k] + along_e.mul_add(e[k], inv * g[k]);
             }
-            // p = 4 (-n.f + 3 (d.f)(d.n)/|d|^2)/|d|^3 + 2 (d.g)/|d|^3.
-            pressure = inv3.mul_add(2.0 * (both + dg) - 4.0 * nf, pressure);
+            // p = 4 (-n.f + 3 (e.f)(e.n))/|d|^3 + 2 (e.g)/|d|^2.
+            let isotropic = inv2 * (both + eg);
+            pressure = pressure + (2.0 * isotropic - 4.0 * (inv * inv2 * nf));
             if GRADIENT {
-                // du_k/dx_j = d_k w_j + along_d delta_kj - g_k d_j/|d|^3.
-                let inv5 = 6.0 * inv3 * inv2;
-                let (along_f, along_n) = (dn * inv5, df * inv5);
-                let radial = -(inv3 * inv2) * (5.0 * both + 3.0 * dg);
+                // du_k/dx_j = e_k w_j + isotropic delta_kj - g_k e_j/|d|^2.
+                let twist = 6.0 * inv * inv2;
+                let (along_f, along_n) = (twist * en, twist * ef);
+                let radial = -inv2 * (5.0 * both + 3.0 * eg);
                 for j in 0..3 {
-                    let w = radial * d[j] + inv3 * g[j] + along_f * f[j] + along_n * n[j];
-                    let away = inv3 * d[j];
+                    let w = radial * e[j] + inv2 * g[j] + along_f * f[j] + along_n * n[j];
+                    let away = inv2 * e[j];
                     for k in 0..3 {
-                        gradient[k][j] = d[k].mul_add(w, gradient[k][j] - away * g[k]);
+                        gradient[k][j] = e[k].mul_add(w, gradient[k][j] - away * g[k]);
                     }
-                    gradient[j][j] = gradient[j][j] + along_d;
+                    gradient[j][j] = gradient[j][j] + isotropic;
                 }
             }
         }

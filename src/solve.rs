@@ -341,6 +341,7 @@ impl<'a> Setting<'a> {
                 stresslet: (viscosity * stresslet).transpose().into(),
                 stresslet_error_estimate: viscosity * answer.further_errors.stresslet,
                 power: viscosity * power,
+                power_error_estimate: answer.further_errors.power.map(|error| viscosity * error),
             }],
             probes: probes.collect(),
             error_estimate: answer.error_estimate,

@@ -318,7 +318,7 @@ fn pressures_and_stresslets_are_within_their_estimates() {
             })
             .fold(0.0, f64::max);
         let e = Vector3::z();
-        let exact = (e * e.transpose() - Matrix3::identity() / 3.0) * 12.0 * std::f64::consts::PI;
+        let exact = (e * e.transpose() - Matrix3::identity() / 3.0) * 12.0 * PI;
         let stresslet = (answer.body_flow.stresslet() - exact).norm();
         let estimates = answer.further_errors;
         println!(
@@ -327,5 +327,10 @@ fn pressures_and_stresslets_are_within_their_estimates() {
         );
         assert!(pressure <= estimates.pressure && estimates.pressure <= 100.0 * pressure);
         assert!(stresslet <= estimates.stresslet);
+        // 8 pi (2 b1^2 + b2^2)/3.
+        let power = (answer.body_flow.power().expect("a power") - 36.0 * PI).abs();
+        let estimate = estimates.power.expect("an estimate");
+        println!("    power {power:.1e} of {estimate:.1e}");
+        assert!(power <= estimate);
     }
 }

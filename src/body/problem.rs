@@ -122,6 +122,8 @@ pub struct FurtherErrors {
     pub pressure: f64,
     /// Of the stresslet, in the Frobenius norm.
     pub stresslet: f64,
+    /// Of the power. Unknown where there is a slip and the tolerance was missed: it takes the tractions of two solutions.
+    pub power: Option<f64>,
 }
 
 /// Wall-clock seconds: the stages of the reported solution, and everything else together.
@@ -237,7 +239,7 @@ impl<'a> Problem<'a> {
         resolution: Resolution,
         progress: &dyn Progress,
     ) -> Result<Answer, ProblemError> {
-        Ok(self.checked(resolution, EVALUATION, progress)?.answer)
+        Ok(self.checked(resolution, None, progress)?.answer)
     }
 
     /// The answer to a tolerance: the first resolution found whose error estimate is below it, or the best there is; compare
@@ -251,7 +253,6 @@ impl<'a> Problem<'a> {
         progress: &dyn Progress,
     ) -> Result<Answer, ProblemError> {
         let begin = Instant::now();
-        let evaluation = evaluation_tolerance(Some(tolerance));
         let first = first_panels(&*self.curve, tolerance)?;
         let modes = self.modes_for(&first, tolerance)?;
         let entries = self.entries(first.len(), modes);
@@ -270,7 +271,7 @@ impl<'a> Problem<'a> {
                 order: ORDER,
                 modes,
             };
-            self.checked(resolution, evaluation, progress)
+            self.checked(resolution, Some(tolerance), progress)
         })?;
         let mut answer = best.answer;
         let spent = begin.elapsed().as_secs_f64();
@@ -278,30 +279,32 @@ impl<'a> Problem<'a> {
         Ok(answer)
     }
 
-    /// The solution at a resolution with its estimated error.
+    /// The solution at a resolution with its estimated error; without a tolerance everything at its best.
     fn checked(
         &self,
         resolution: Resolution,
-        evaluation: f64,
+        tolerance: Option<f64>,
         progress: &dyn Progress,
     ) -> Result<Round<Answer>, ProblemError> {
-        let solution = self.solve(&resolution, evaluation, progress)?;
+        let solution = self.solve(&resolution, evaluation_tolerance(tolerance), progress)?;
         let start = Instant::now();
         let finer = Resolution {
             order: resolution.order + EXTRA_ORDER,
             modes: self.modes_of_check(resolution.modes),
             panels: resolution.panels.clone(),
         };
-        let check = self.solve(&finer, evaluation, progress)?;
+        // At its best, so that the error of the evaluation itself shows.
+        let check = self.solve(&finer, EVALUATION, progress)?;
         let difference = solution.difference(&check);
-        let further_errors = solution.further_errors(&check);
-        drop(check);
         let BodyFlow {
             discretization,
             layers,
             ..
         } = &solution.body_flow;
         let error_estimate = error_estimate(discretization, difference);
+        let met = tolerance.is_none_or(|tolerance| error_estimate <= tolerance);
+        let further_errors = solution.further_errors(&check, met || self.slip.is_none())?;
+        drop(check);
         // A free body's single layer is a rigid motion: there is nothing to resolve.
         let density = match self.formulation {
             Formulation::SingleLayer => &layers.single,
@@ -409,9 +412,11 @@ impl<'a> Problem<'a> {
         };
         match self.slip {
             Some(slip) => {
-                let whole = SurfaceModes::sample(discretization, modes, |x| motion.at(x) + slip(x));
-                let slip = whole.modes.plus(-1.0, &motion.on(discretization));
-                (slip, whole.largest)
+                // More samples than the modes need: what they alias differs between two numbers of modes, and shows in the estimate.
+                let most = modes + modes / 2;
+                let whole = SurfaceModes::sample(discretization, most, |x| motion.at(x) + slip(x));
+                let slip = whole.modes.truncated(modes.max(1));
+                (slip.plus(-1.0, &motion.on(discretization)), whole.largest)
             }
             None => (
                 SurfaceModes::zero(0, discretization.nodes().len()),
@@ -542,7 +547,7 @@ impl Solution {
     }
 
     /// The errors that the solution which checks this one lets expect, with what rounding leaves.
-    fn further_errors(&self, check: &Self) -> FurtherErrors {
+    fn further_errors(&self, check: &Self, power: bool) -> Result<FurtherErrors, QuadratureError> {
         let discretization = &self.body_flow.discretization;
         let estimate = |difference: f64, scale: f64| {
             scale * error_estimate(discretization, difference / scale.max(f64::MIN_POSITIVE))
@@ -554,10 +559,17 @@ impl Solution {
                 (difference.max(off), scale.max(size))
             });
         let [a, b] = [self, check].map(|solution| solution.body_flow.stresslet());
-        FurtherErrors {
+        let power = if power {
+            let (a, b) = (self.body_flow.power()?, check.body_flow.power()?);
+            Some(estimate((a - b).abs(), b.abs()))
+        } else {
+            None
+        };
+        Ok(FurtherErrors {
             pressure: estimate(difference, scale),
             stresslet: estimate((a - b).norm(), b.norm()),
-        }
+            power,
+        })
     }
 
     fn answer(

@@ -63,7 +63,8 @@ pub struct RigidBodyMatrices {
     pub resistance: ResistanceMatrix,
     /// Mobility, by the completed double layer.
     pub mobility: MobilityMatrix,
-    /// Estimated error of the entries relative to the largest, lengths in units of half the body's largest extent.
+    /// Estimated error of every entry $(i, j)$ relative to the root of the product of the entries $(i, i)$ and $(j, j)$: of each scalar
+    /// function relative to itself, of $Y^B$ to $\sqrt{Y^A Y^C}$.
     pub error_estimate: f64,
     /// The resolution they were computed with.
     pub resolution: Resolution,
@@ -240,13 +241,16 @@ fn checked(
 ) -> Result<Round<RigidBodyMatrices>, ProblemError> {
     let discretization = Discretization::new(curve.clone(), panels.clone(), order)?;
     let finer = discretization.with_order(order + EXTRA_ORDER)?;
-    let size = discretization.size();
     let (resistance, mobility, densities) = solve(discretization.clone(), progress)?;
     let (finer_resistance, finer_mobility, _) = solve(finer, progress)?;
-    let difference = f64::max(
-        distance(&resistance.0, &finer_resistance.0, 1.0 / size),
-        distance(&mobility.0, &finer_mobility.0, size),
+    // Both the finer matrices and the other equation's inverse check what was found.
+    let mut difference = f64::max(
+        distance(&resistance.0, &finer_resistance.0),
+        distance(&mobility.0, &finer_mobility.0),
     );
+    if let Some(inverse) = resistance.0.try_inverse() {
+        difference = difference.max(distance(&inverse, &mobility.0));
+    }
     let error_estimate = error_estimate(&discretization, difference);
     Ok(Round {
         error_estimate,
@@ -265,9 +269,9 @@ fn checked(
     })
 }
 
-/// The largest difference of two matrices relative to the largest entry of the second, angular rows and columns times `length`.
-fn distance(a: &Matrix6<f64>, b: &Matrix6<f64>, length: f64) -> f64 {
-    let scale = |k: usize| if k < 3 { 1.0 } else { length };
-    let scaled = |m: &Matrix6<f64>| Matrix6::from_fn(|i, j| scale(i) * scale(j) * m[(i, j)]);
-    scaled(&(a - b)).amax() / scaled(b).amax()
+/// The largest difference of an entry of two positive definite matrices relative to $\sqrt{b_{ii} b_{jj}}$, the largest that it could be in
+/// the second: every scalar function counts by its own size.
+fn distance(a: &Matrix6<f64>, b: &Matrix6<f64>) -> f64 {
+    let scale = |i: usize, j: usize| (b[(i, i)] * b[(j, j)]).abs().sqrt();
+    Matrix6::from_fn(|i, j| (a[(i, j)] - b[(i, j)]) / scale(i, j)).amax()
 }

@@ -32,7 +32,7 @@ pub struct ShapeReport {
     pub functions: BTreeMap<String, f64>,
     /// The point about which rotation and translation do not couple.
     pub center_of_reaction: [f64; 3],
-    /// Estimated error of the matrices' entries relative to the largest, lengths in units of half the shape's largest extent.
+    /// Estimated error of every entry (i, j) of the matrices relative to the root of the product of entries (i, i) and (j, j).
     pub error_estimate: f64,
     /// The shape's name, and how it was discretised.
     #[serde(flatten)]

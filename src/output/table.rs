@@ -109,9 +109,12 @@ fn write_bodies(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
             "power",
             number(answer.power)
         )?;
+        let of_power = answer
+            .power_error_estimate
+            .map_or("unknown".to_owned(), |error| format!("{error:.1e}"));
         writeln!(
             out,
-            "{:>6}  {:width$}  (stresslet: estimated error {:.1e})",
+            "{:>6}  {:width$}  (estimated errors: stresslet {:.1e}, power {of_power})",
             "", "", answer.stresslet_error_estimate
         )?;
     }

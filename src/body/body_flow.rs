@@ -37,7 +37,10 @@ impl BodyFlow {
         Flow::new(&self.discretization, self.layers.clone())
     }
 
-    /// Velocity and pressure of the whole flow at every target, to the tolerance of [`Flow::at`].
+    /// Velocity and pressure of the whole flow at every target, to the tolerance of [`Flow::at`]; on the surface, the limits from outside.
+    ///
+    /// Targets inside the body are not refused: there the layers go on to a flow that means nothing, and
+    /// [`Outline::contains`](crate::curve::Outline::contains) tells which they are. One call for many targets is cheaper than many calls.
     ///
     /// # Errors
     /// As [`Flow::at`].

@@ -153,8 +153,8 @@ impl<'a> Node<'a> {
 
     /// Three finite numbers.
     pub(super) fn vector(&self) -> Result<[f64; 3], CaseError> {
-        let fail = || self.expected("three finite numbers, [x, y, z]");
-        let items = self.items("three finite numbers, [x, y, z]")?;
+        let fail = || self.expected("three finite numbers (at most 1e30 in magnitude), [x, y, z]");
+        let items = self.items("three finite numbers (at most 1e30 in magnitude), [x, y, z]")?;
         let items: &[_; 3] = items.try_into().map_err(|_| fail())?;
         let mut vector = [0.0; 3];
         for (component, item) in vector.iter_mut().zip(items) {

@@ -95,6 +95,8 @@ pub struct Answer {
     pub flow: Vec<FlowAt>,
     /// Everything that the flow is made of.
     pub body_flow: BodyFlow,
+    /// The same of the solution that checks it.
+    check: BodyFlow,
     /// Estimated error: of the velocities at the targets relative to [`largest_speed`](Self::largest_speed), and of what was found of
     /// force and torque or of the rigid motion relative to the larger of the two (a force times the body's size, half its largest
     /// extent, counting as torque, an angular velocity times that as velocity).
@@ -122,8 +124,6 @@ pub struct FurtherErrors {
     pub pressure: f64,
     /// Of the stresslet, in the Frobenius norm.
     pub stresslet: f64,
-    /// Of the power. Unknown where there is a slip and the tolerance was missed: it takes the tractions of two solutions.
-    pub power: Option<f64>,
 }
 
 /// Wall-clock seconds: the stages of the reported solution, and everything else together.
@@ -201,6 +201,15 @@ fn entries_of_check(panels: usize, order: usize, matrices: usize) -> f64 {
 /// Modes of the solution that checks one of so many.
 fn checking_modes(modes: usize) -> usize {
     modes + 8.max(modes / 4)
+}
+
+/// What a solution and the one that checks it do with different care, so that the error made there shows in the difference.
+#[derive(Clone, Copy)]
+struct Care {
+    /// Tolerance of the flow's quadrature.
+    evaluation: f64,
+    /// Modes that the samples of the slip determine, over those kept: what the others alias is left in.
+    oversampling: f64,
 }
 
 /// One solution, with what it takes to compare it with another.
@@ -286,15 +295,22 @@ impl<'a> Problem<'a> {
         tolerance: Option<f64>,
         progress: &dyn Progress,
     ) -> Result<Round<Answer>, ProblemError> {
-        let solution = self.solve(&resolution, evaluation_tolerance(tolerance), progress)?;
+        let care = Care {
+            evaluation: evaluation_tolerance(tolerance),
+            oversampling: 1.5,
+        };
+        let solution = self.solve(&resolution, care, progress)?;
         let start = Instant::now();
         let finer = Resolution {
             order: resolution.order + EXTRA_ORDER,
             modes: self.modes_of_check(resolution.modes),
             panels: resolution.panels.clone(),
         };
-        // At its best, so that the error of the evaluation itself shows.
-        let check = self.solve(&finer, EVALUATION, progress)?;
+        let care = Care {
+            evaluation: EVALUATION,
+            oversampling: 2.5,
+        };
+        let check = self.solve(&finer, care, progress)?;
         let difference = solution.difference(&check);
         let BodyFlow {
             discretization,
@@ -302,9 +318,7 @@ impl<'a> Problem<'a> {
             ..
         } = &solution.body_flow;
         let error_estimate = error_estimate(discretization, difference);
-        let met = tolerance.is_none_or(|tolerance| error_estimate <= tolerance);
-        let further_errors = solution.further_errors(&check, met || self.slip.is_none())?;
-        drop(check);
+        let further_errors = solution.further_errors(&check);
         // A free body's single layer is a rigid motion: there is nothing to resolve.
         let density = match self.formulation {
             Formulation::SingleLayer => &layers.single,
@@ -312,23 +326,25 @@ impl<'a> Problem<'a> {
         };
         let unresolved = unresolved_panels(discretization, &[density])?;
         let errors = (error_estimate, further_errors);
+        let spent = start.elapsed().as_secs_f64();
         Ok(Round {
             panels: resolution.panels.clone(),
             unresolved,
             error_estimate,
-            answer: solution.answer(resolution, errors, start.elapsed().as_secs_f64()),
+            answer: solution.answer(check.body_flow, resolution, errors, spent),
         })
     }
 
     fn solve(
         &self,
         resolution: &Resolution,
-        evaluation: f64,
+        care: Care,
         progress: &dyn Progress,
     ) -> Result<Solution, ProblemError> {
         let discretization = self.discretization(&resolution.panels, resolution.order)?;
         let background = self.background.on(&discretization);
-        let (slip, fastest) = self.slip_and_speed(&discretization, resolution.modes);
+        let (slip, fastest) =
+            self.slip_and_speed(&discretization, resolution.modes, care.oversampling);
         let imposed = fastest.max(background.largest);
         if !imposed.is_finite() {
             return Err(ProblemError::Velocity);
@@ -360,7 +376,7 @@ impl<'a> Problem<'a> {
             motion,
             slip,
         };
-        let flow = body_flow.at(self.targets, evaluation)?;
+        let flow = body_flow.at(self.targets, care.evaluation)?;
         Ok(Solution {
             body_flow,
             wrench,
@@ -405,15 +421,19 @@ impl<'a> Problem<'a> {
     }
 
     /// The slip, and the largest speed of given motion and slip together; infinite if the slip is not finite.
-    fn slip_and_speed(&self, discretization: &Discretization, modes: usize) -> (SurfaceModes, f64) {
+    fn slip_and_speed(
+        &self,
+        discretization: &Discretization,
+        modes: usize,
+        oversampling: f64,
+    ) -> (SurfaceModes, f64) {
         let motion = match self.motion {
             Motion::Given(motion) => motion,
             Motion::Free(_) => RigidMotion::rest(),
         };
         match self.slip {
             Some(slip) => {
-                // More samples than the modes need: what they alias differs between two numbers of modes, and shows in the estimate.
-                let most = modes + modes / 2;
+                let most = (oversampling * modes as f64) as usize;
                 let whole = SurfaceModes::sample(discretization, most, |x| motion.at(x) + slip(x));
                 let slip = whole.modes.truncated(modes.max(1));
                 (slip.plus(-1.0, &motion.on(discretization)), whole.largest)
@@ -547,11 +567,9 @@ impl Solution {
     }
 
     /// The errors that the solution which checks this one lets expect, with what rounding leaves.
-    fn further_errors(&self, check: &Self, power: bool) -> Result<FurtherErrors, QuadratureError> {
+    fn further_errors(&self, check: &Self) -> FurtherErrors {
         let discretization = &self.body_flow.discretization;
-        let estimate = |difference: f64, scale: f64| {
-            scale * error_estimate(discretization, difference / scale.max(f64::MIN_POSITIVE))
-        };
+        let estimate = |difference, scale| absolute_error(discretization, difference, scale);
         let pressures = self.flow.iter().zip(&check.flow);
         let (difference, scale) =
             pressures.fold((0.0f64, 0.0f64), |(difference, scale), (a, b)| {
@@ -559,21 +577,15 @@ impl Solution {
                 (difference.max(off), scale.max(size))
             });
         let [a, b] = [self, check].map(|solution| solution.body_flow.stresslet());
-        let power = if power {
-            let (a, b) = (self.body_flow.power()?, check.body_flow.power()?);
-            Some(estimate((a - b).abs(), b.abs()))
-        } else {
-            None
-        };
-        Ok(FurtherErrors {
+        FurtherErrors {
             pressure: estimate(difference, scale),
             stresslet: estimate((a - b).norm(), b.norm()),
-            power,
-        })
+        }
     }
 
     fn answer(
         self,
+        check: BodyFlow,
         resolution: Resolution,
         (error_estimate, further_errors): (f64, FurtherErrors),
         estimate: f64,
@@ -592,12 +604,31 @@ impl Solution {
             unknowns: self.unknowns,
             flow: self.flow,
             body_flow: self.body_flow,
+            check,
             error_estimate,
             further_errors,
             resolution,
             largest_speed: self.largest_speed,
             timings,
         }
+    }
+}
+
+/// The estimated error of a number about as large as `scale`, from how far the solution that checks it is off.
+fn absolute_error(discretization: &Discretization, difference: f64, scale: f64) -> f64 {
+    scale * error_estimate(discretization, difference / scale.max(f64::MIN_POSITIVE))
+}
+
+impl Answer {
+    /// The estimated absolute error of [`BodyFlow::power`], for viscosity 1; with a slip it takes the tractions of the solution and of
+    /// the one that checks it.
+    ///
+    /// # Errors
+    /// If a quadrature rule is missing.
+    pub fn power_error(&self) -> Result<f64, QuadratureError> {
+        let (a, b) = (self.body_flow.power()?, self.check.power()?);
+        let discretization = &self.body_flow.discretization;
+        Ok(absolute_error(discretization, (a - b).abs(), b.abs()))
     }
 }
 

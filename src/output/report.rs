@@ -44,7 +44,7 @@ pub struct BodyReport {
     pub stresslet_error_estimate: f64,
     /// Rate of work that the surface does on the fluid.
     pub power: f64,
-    /// Its estimated error, absolute; unknown for a slip where the tolerance was missed.
+    /// Its estimated error, absolute; not estimated for a case with `[test]`.
     pub power_error_estimate: Option<f64>,
 }
 

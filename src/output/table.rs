@@ -111,7 +111,7 @@ fn write_bodies(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
         )?;
         let of_power = answer
             .power_error_estimate
-            .map_or("unknown".to_owned(), |error| format!("{error:.1e}"));
+            .map_or("not estimated".to_owned(), |error| format!("{error:.1e}"));
         writeln!(
             out,
             "{:>6}  {:width$}  (estimated errors: stresslet {:.1e}, power {of_power})",

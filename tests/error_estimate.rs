@@ -244,7 +244,6 @@ fn bounds_the_true_error_of_free_bodies_too() {
 #[test]
 fn bounds_the_true_error_in_shear() {
     let mut rng = Rng::with_seed(4);
-    let mut ratios = Ratios::new();
     for case in 0..20 {
         let aspect = 10f64.powf(uniform(&mut rng, -0.7, 0.7));
         let axes = if aspect > 1.0 {
@@ -276,12 +275,11 @@ fn bounds_the_true_error_in_shear() {
             angular_velocity: background.angular_velocity() + lambda * turning,
         };
         let truth = error_of_motion(&answer, exact, 1.0);
-        // Below that both are rounding.
-        if truth > 1e-14 {
-            ratios.compare(case, "by hand", &answer, truth);
-        }
+        // The density is a polynomial: coarse panels do, and what is left is rounding, as the estimate must see.
+        let estimate = answer.error_estimate;
+        println!("{case}: estimate {estimate:.1e}, error {truth:.1e}");
+        assert!(truth <= estimate && estimate <= 1e-12);
     }
-    ratios.check();
 }
 
 /// A squirmer's flow in closed form (Blake 1971): $p = -2 b_2 P_2(\cos\theta)/r^3$ and the stresslet $4\pi b_2 (e e - I/3)$, with coarse panels.

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use nalgebra::{Matrix3, Point3, Unit, Vector3};
 use panel_quadrature::QuadratureError;
+use rayon::prelude::*;
 
 use crate::body::body_flow::BodyFlow;
 use crate::body::dirichlet;
@@ -17,7 +18,7 @@ use crate::case::{Accuracy, Background, Body, Case, CaseError, Formulation, Moti
 use crate::curve::{GeneratingCurve, Meridian, Outline, Panels};
 use crate::kernel::{FlowAt, Stokeslet};
 use crate::output::{BodyReport, Discretization, KnownFlowReport, ProbeReport, Report, Timings};
-use crate::progress::Progress;
+use crate::progress::{Progress, Silent};
 
 /// Why a case has no answer.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -56,24 +57,30 @@ impl Solved {
     /// # Errors
     /// If a point is not finite.
     pub fn flow_at(&self, points: &[Point3<f64>]) -> Result<Vec<Option<FlowAt>>, SolveError> {
+        self.evaluate(points, self.tolerance, &Silent)
+    }
+
+    /// The same to another tolerance, telling where it is.
+    pub(crate) fn evaluate(
+        &self,
+        points: &[Point3<f64>],
+        tolerance: f64,
+        progress: &dyn Progress,
+    ) -> Result<Vec<Option<FlowAt>>, SolveError> {
         let failed = |error: &dyn std::fmt::Display| SolveError::Failed(error.to_string());
         let mut flow = vec![None; points.len()];
         for body in &self.bodies {
             let curve = body.flow.discretization.curve();
             let outline = Outline::new(&**curve).map_err(|error| failed(&error))?;
-            let (mut targets, mut places) = (Vec::new(), Vec::new());
-            for (place, &point) in points.iter().enumerate() {
+            let outside = |(place, &point): (usize, &Point3<f64>)| {
                 let target = body.frame.point_to_body(point);
-                if !outline.contains(meridian(target)) {
-                    targets.push(target);
-                    places.push(place);
-                }
-            }
-            let found = body.flow.at(&targets, self.tolerance);
-            for (place, at) in places
-                .into_iter()
-                .zip(found.map_err(|error| failed(&error))?)
-            {
+                (!outline.contains(meridian(target))).then_some((place, target))
+            };
+            let (places, targets): (Vec<usize>, Vec<Point3<f64>>) =
+                points.par_iter().enumerate().filter_map(outside).unzip();
+            let found = body.flow.evaluate(&targets, tolerance, progress);
+            let found = found.map_err(|error| failed(&error))?;
+            for (place, at) in places.into_iter().zip(found) {
                 flow[place] = Some(FlowAt {
                     velocity: body.frame.vector_to_lab(at.velocity),
                     pressure: body.viscosity * at.pressure,

@@ -4,13 +4,14 @@ use nalgebra::{Matrix3, Point3};
 use panel_quadrature::QuadratureError;
 
 use super::discretization::Discretization;
-use super::flow::{Flow, FlowError, Side};
+use super::flow::{Flow, FlowError, Side, first_not_finite};
 use super::layers::Layers;
 use super::linear_flow::LinearFlow;
 use super::rigid::{RigidMotion, Wrench};
 use super::stresslet::stresslet;
 use super::surface::SurfaceModes;
 use crate::kernel::{FlowAt, FlowGradientAt};
+use crate::progress::{Progress, Silent};
 
 /// Everything that a solved problem is made of, in the body's frame and for viscosity 1: the flow is
 ///
@@ -31,6 +32,9 @@ pub struct BodyFlow {
     pub slip: SurfaceModes,
 }
 
+/// Targets that are evaluated between two reports of progress.
+const CHUNK: usize = 1024;
+
 impl BodyFlow {
     /// The flow that the body adds to the undisturbed one.
     pub fn disturbance(&self) -> Flow<'_> {
@@ -45,7 +49,26 @@ impl BodyFlow {
     /// # Errors
     /// As [`Flow::at`].
     pub fn at(&self, targets: &[Point3<f64>], tolerance: f64) -> Result<Vec<FlowAt>, FlowError> {
-        let mut flow = self.disturbance().at(targets, tolerance)?;
+        self.evaluate(targets, tolerance, &Silent)
+    }
+
+    /// The same, telling where it is.
+    pub(crate) fn evaluate(
+        &self,
+        targets: &[Point3<f64>],
+        tolerance: f64,
+        progress: &dyn Progress,
+    ) -> Result<Vec<FlowAt>, FlowError> {
+        if let Some(index) = first_not_finite(targets) {
+            return Err(FlowError::NotFinite { index });
+        }
+        progress.begin("evaluating", targets.len());
+        let disturbance = self.disturbance();
+        let mut flow = Vec::with_capacity(targets.len());
+        for some in targets.chunks(CHUNK) {
+            flow.extend(disturbance.at(some, tolerance)?);
+            progress.advance(some.len());
+        }
         for (flow, target) in flow.iter_mut().zip(targets) {
             flow.velocity += self.background.at(target.coords);
         }

@@ -165,7 +165,7 @@ impl<'a> Flow<'a> {
         targets: &[Point3<f64>],
         tolerance: f64,
     ) -> Result<Vec<FlowGradientAt>, FlowError> {
-        if let Some(index) = (targets.iter()).position(|x| !x.iter().all(|x| x.is_finite())) {
+        if let Some(index) = first_not_finite(targets) {
             return Err(FlowError::NotFinite { index });
         }
         let far = self.far()?;
@@ -301,6 +301,11 @@ fn limit(discretization: &Discretization, sight: Sight, normal: [f64; 2], side: 
         z: signed * normal[1],
     };
     Sight { gap, ..sight }
+}
+
+/// The first target with a coordinate that is not finite.
+pub(crate) fn first_not_finite(targets: &[Point3<f64>]) -> Option<usize> {
+    (targets.iter()).position(|x| !x.iter().all(|x| x.is_finite()))
 }
 
 fn meridian(point: &Point3<f64>) -> Meridian {

@@ -368,7 +368,6 @@ impl<'a> Problem<'a> {
             Motion::Free(_) => imposed.max(largest_speed(&motion, &discretization)),
         };
         let start = Instant::now();
-        progress.begin("evaluating", 0);
         let body_flow = BodyFlow {
             discretization,
             layers,
@@ -376,7 +375,7 @@ impl<'a> Problem<'a> {
             motion,
             slip,
         };
-        let flow = body_flow.at(self.targets, care.evaluation)?;
+        let flow = body_flow.evaluate(self.targets, care.evaluation, progress)?;
         Ok(Solution {
             body_flow,
             wrench,

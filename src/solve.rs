@@ -1,7 +1,6 @@
 //! From a case to its answer.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use nalgebra::{Matrix3, Point3, Unit, Vector3};
 use panel_quadrature::QuadratureError;
@@ -9,13 +8,14 @@ use rayon::prelude::*;
 
 use crate::body::body_flow::BodyFlow;
 use crate::body::dirichlet;
+use crate::body::flow::meridian;
 use crate::body::frame::Frame;
 use crate::body::linear_flow::LinearFlow;
 use crate::body::problem::{self, Answer, Problem, ProblemError, Resolution, evaluation_tolerance};
 use crate::body::rigid::{RigidMotion, Wrench};
 use crate::body::slip::{pole_to_pole, squirmer};
 use crate::case::{Accuracy, Background, Body, Case, CaseError, Formulation, Motion, Slip};
-use crate::curve::{GeneratingCurve, Meridian, Outline, Panels};
+use crate::curve::{GeneratingCurve, Outline, Panels};
 use crate::kernel::{FlowAt, Stokeslet};
 use crate::output::{BodyReport, Discretization, KnownFlowReport, ProbeReport, Report, Timings};
 use crate::progress::{Progress, Silent};
@@ -74,7 +74,7 @@ impl Solved {
             let outline = Outline::new(&**curve).map_err(|error| failed(&error))?;
             let outside = |(place, &point): (usize, &Point3<f64>)| {
                 let target = body.frame.point_to_body(point);
-                (!outline.contains(meridian(target))).then_some((place, target))
+                (!outline.contains(meridian(&target))).then_some((place, target))
             };
             let (places, targets): (Vec<usize>, Vec<Point3<f64>>) =
                 points.par_iter().enumerate().filter_map(outside).unzip();
@@ -105,14 +105,6 @@ impl SolvedBody {
     /// The flow in the body's own frame and for viscosity 1, with panels and nodes of its generating curve.
     pub fn flow(&self) -> &BodyFlow {
         &self.flow
-    }
-}
-
-/// Where a point lies in the half plane.
-fn meridian(x: Point3<f64>) -> Meridian {
-    Meridian {
-        r: x.x.hypot(x.y),
-        z: x.z,
     }
 }
 
@@ -220,7 +212,7 @@ impl<'a> Setting<'a> {
         let frame = Frame::new(body.center.into(), Unit::new_normalize(body.axis.into()));
         let outline = Outline::new(&*curve).map_err(|error| at_shape(&error))?;
         let inside =
-            |point: [f64; 3]| outline.contains(meridian(frame.point_to_body(point.into())));
+            |point: [f64; 3]| outline.contains(meridian(&frame.point_to_body(point.into())));
         for probe in &case.probes {
             if inside(probe.value) {
                 let message = format!(
@@ -324,15 +316,13 @@ impl<'a> Setting<'a> {
             } => ([velocity, angular_velocity], forces),
             Motion::Free { force, torque } => (velocities, [force, torque]),
         };
-        let start = Instant::now();
-        let power = answer.body_flow.power();
         let failed = |error: QuadratureError| SolveError::Failed(error.to_string());
-        let power = power.map_err(failed)?;
-        let surface = start.elapsed().as_secs_f64();
-        // A known flow has as many modes as there are, and nobody asks for its power.
-        let power_error = match self.case.test {
-            Some(_) => None,
-            None => Some(answer.power_error().map_err(failed)?),
+        let (power, power_error) = match self.case.test {
+            Some(_) => (None, None),
+            None => (
+                Some(answer.body_flow.power().map_err(failed)?),
+                Some(answer.power_error().map_err(failed)?),
+            ),
         };
         let stresslet = self.frame.tensor_to_lab(&answer.body_flow.stresslet());
         let probes = self
@@ -354,7 +344,7 @@ impl<'a> Setting<'a> {
                 torque,
                 stresslet: (viscosity * stresslet).transpose().into(),
                 stresslet_error_estimate: viscosity * answer.further_errors.stresslet,
-                power: viscosity * power,
+                power: power.map(|power| viscosity * power),
                 power_error_estimate: power_error.map(|error| viscosity * error),
             }],
             probes: probes.collect(),
@@ -372,7 +362,7 @@ impl<'a> Setting<'a> {
                 assemble: t.assemble,
                 factor: t.factor,
                 iterate: t.solve,
-                evaluate: t.evaluate + surface,
+                evaluate: t.evaluate,
                 estimate: t.estimate,
             },
             test: None,

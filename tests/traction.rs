@@ -158,7 +158,7 @@ fn of_a_single_layer_jumps_by_the_density() {
             let error = found.plus(-1.0, &principal.clone().plus(jump, &density));
             let error = (0..=12).map(|n| error.amplitude(n)).fold(0.0, f64::max);
             println!("{:?} {side:?}: {error:.1e}", nodes.curve());
-            assert!(error < 1e-10);
+            assert!(error < 1e-12);
         }
     }
 }
@@ -191,7 +191,7 @@ fn of_a_double_layer_does_not_jump() {
             force.norm(),
             torque.norm()
         );
-        assert!(jump < 1e-9 && force.norm() < 1e-10 && torque.norm() < 1e-10);
+        assert!(jump < 4e-12 && force.norm() < 2e-13 && torque.norm() < 9e-14);
     }
 }
 
@@ -219,7 +219,7 @@ fn integrates_to_force_and_torque() {
             let force = (found.force + answer.wrench.force).norm() / scale;
             let torque = (found.torque + answer.wrench.torque).norm() / scale;
             println!("{curve:?} {motion:?}: force {force:.1e}, torque {torque:.1e}");
-            assert!(force <= 1e-10 && torque <= 1e-10);
+            assert!(force <= 8e-13 && torque <= 1e-12);
         }
     }
 }
@@ -252,6 +252,6 @@ fn two_motions_are_reciprocal() {
         println!(
             "{curve:?}: {forth} and {back}, {error:.1e} of the power; powers {power} and {direct}"
         );
-        assert!(error <= 1e-10 && (power / direct - 1.0).abs() <= 1e-10);
+        assert!(error <= 6e-15 && (power / direct - 1.0).abs() <= 5e-13);
     }
 }

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use super::close::{self, CloseFlow};
 use super::densities::Densities;
-use super::discretization::Discretization;
+use super::discretization::{Discretization, Node};
 use super::far::{FarFlow, Separation};
 use super::layers::Layers;
 use super::near::Sight;
@@ -281,10 +281,8 @@ impl<'a> Flow<'a> {
         if distance > ON_SURFACE * self.discretization.size() {
             return sight;
         }
-        let tangent = self.discretization.curve().tangent(sight.s);
-        let speed = tangent.r.hypot(tangent.z);
-        let normal = [-tangent.z / speed, tangent.r / speed];
-        limit(self.discretization, sight, normal, self.side)
+        let foot = Node::new(&**self.discretization.curve(), sight.s, 0.0);
+        limit(self.discretization, sight, foot.normal, self.side)
     }
 }
 
@@ -308,7 +306,8 @@ pub(crate) fn first_not_finite(targets: &[Point3<f64>]) -> Option<usize> {
     (targets.iter()).position(|x| !x.iter().all(|x| x.is_finite()))
 }
 
-fn meridian(point: &Point3<f64>) -> Meridian {
+/// Where a point lies in the half plane.
+pub(crate) fn meridian(point: &Point3<f64>) -> Meridian {
     Meridian {
         r: point.x.hypot(point.y),
         z: point.z,

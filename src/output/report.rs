@@ -42,9 +42,9 @@ pub struct BodyReport {
     pub stresslet: [[f64; 3]; 3],
     /// Its estimated error, absolute.
     pub stresslet_error_estimate: f64,
-    /// Rate of work that the surface does on the fluid.
-    pub power: f64,
-    /// Its estimated error, absolute; not estimated for a case with `[test]`.
+    /// Rate of work that the surface does on the fluid; not for a case with `[test]`, whose tractions would cost more than its answer.
+    pub power: Option<f64>,
+    /// Its estimated error, absolute.
     pub power_error_estimate: Option<f64>,
 }
 
@@ -116,7 +116,7 @@ impl Report {
             if !body.stresslet_error_estimate.is_finite() {
                 return Some(format!("bodies[{i}].stresslet_error_estimate"));
             }
-            if !body.power.is_finite() {
+            if body.power.is_some_and(|power| !power.is_finite()) {
                 return Some(format!("bodies[{i}].power"));
             }
         }

@@ -101,21 +101,16 @@ fn write_bodies(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
                 numbers(vector)
             )?;
         }
+        let mut errors = format!("stresslet {:.1e}", answer.stresslet_error_estimate);
+        if let (Some(power), Some(error)) = (answer.power, answer.power_error_estimate) {
+            let number = number(power);
+            writeln!(out, "{:>6}  {:width$}  {:16}  {number}", "", "", "power")?;
+            errors += &format!(", power {error:.1e}");
+        }
         writeln!(
             out,
-            "{:>6}  {:width$}  {:16}  {}",
-            "",
-            "",
-            "power",
-            number(answer.power)
-        )?;
-        let of_power = answer
-            .power_error_estimate
-            .map_or("not estimated".to_owned(), |error| format!("{error:.1e}"));
-        writeln!(
-            out,
-            "{:>6}  {:width$}  (estimated errors: stresslet {:.1e}, power {of_power})",
-            "", "", answer.stresslet_error_estimate
+            "{:>6}  {:width$}  (estimated errors: {errors})",
+            "", ""
         )?;
     }
     Ok(())

@@ -62,7 +62,7 @@ fn every_aspect_swims_as_in_closed_form() {
             answer.resolution.panels.len(),
             answer.error_estimate
         );
-        assert!(error <= 1e-10 && answer.motion.angular_velocity.norm() <= 1e-10);
+        assert!(error <= 9e-15 && answer.motion.angular_velocity.norm() <= 1e-14);
     }
     assert!((speed(1.0 + 1e-4, 1.0) - 2.0 / 3.0).abs() < PI * 1e-4);
 }

@@ -37,7 +37,7 @@ fn are_symmetric_and_inverse_to_each_other() {
             found.resolution.panels.len(),
             found.error_estimate
         );
-        assert!(inverse <= 1e-11 && asymmetry[0] <= 1e-11 && asymmetry[1] <= 1e-11);
+        assert!(inverse <= 1e-12 && asymmetry[0] <= 4e-15 && asymmetry[1] <= 4e-15);
         assert!(resistance.symmetric_eigenvalues().min() > 0.0);
     }
 }

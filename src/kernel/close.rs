@@ -22,7 +22,7 @@ use super::modes::{Kernel, Parity};
 use super::moments::{CubicMoments, Moments};
 use super::pair::{Pair, Separation};
 use super::{DoubleLayer, SingleLayer, SingleLayerPressure};
-use crate::special::lanes::Lanes;
+use f64_lanes::Lanes;
 
 /// Components of the densities: $\sigma$, $\varrho$, $y^\theta$, $y^t$, three each (radial, azimuthal, axial).
 pub(crate) const DENSITIES: usize = 12;

@@ -6,7 +6,7 @@ use super::modes::{Kernel, Parity};
 use super::moments::Moments;
 use super::pair::{Pair, Separation};
 use super::{DoubleLayer, SingleLayer};
-use crate::special::lanes::Lanes;
+use f64_lanes::Lanes;
 
 /// The kernel $D_{ij} + \eta S_{ij}$ (Hebeker 1986): the second-kind equation $(\frac12 + D + \eta S)\sigma = f$ of the exterior
 /// Dirichlet problem has exactly one solution for every $\eta > 0$.

@@ -6,7 +6,7 @@ use std::ops::{AddAssign, Range};
 use nalgebra::{Matrix3, Point3, Vector3};
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::special::lanes::{Lanes, PADDING};
+use f64_lanes::{Lanes, PADDING};
 
 /// Points of a surface that carry a double and a single layer, in structure-of-arrays form.
 #[derive(Clone, Debug, Default)]

@@ -15,7 +15,7 @@ use rustfft::{Fft, FftPlanner};
 
 use super::modes::{Kernel, Parity};
 use super::pair::Pair;
-use crate::special::lanes::{Lanes, padded};
+use f64_lanes::{Lanes, padded};
 
 /// Samples and transforms for one number of modes.
 pub(crate) struct Fourier {

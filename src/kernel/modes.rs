@@ -5,8 +5,8 @@ use pulp::{Arch, Simd, WithSimd};
 use super::fourier::{self, Fourier};
 use super::moments::{MomentSeries, Moments};
 use super::pair::{Pair, Separation};
-use crate::special::lanes::{Lanes, padded};
 use crate::special::toroidal::{self, Ladder};
+use f64_lanes::{Lanes, padded};
 
 /// Whether an entry of a kernel is even or odd in the azimuthal separation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

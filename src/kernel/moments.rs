@@ -15,7 +15,7 @@
 use pulp::Simd;
 
 use super::pair::Pair;
-use crate::special::lanes::Lanes;
+use f64_lanes::Lanes;
 
 /// The moments of one mode.
 #[derive(Clone, Copy)]

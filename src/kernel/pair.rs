@@ -2,7 +2,7 @@
 
 use pulp::Simd;
 
-use crate::special::lanes::Lanes;
+use f64_lanes::Lanes;
 
 /// One target and a register of sources in the meridian half plane.
 ///

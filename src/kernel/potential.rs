@@ -7,7 +7,7 @@ use super::fourier;
 use super::modes::{Modes, SourceRings, TargetRing, Workspace};
 use super::moments::MomentSeries;
 use super::pair::Pair;
-use crate::special::lanes::{Lanes, PADDING, padded};
+use f64_lanes::{Lanes, PADDING, padded};
 
 /// Modes of the densities on source rings, times the rings' quadrature weights.
 #[derive(Debug, Default)]

@@ -7,7 +7,7 @@ use pulp::Simd;
 use super::modes::{Kernel, Parity};
 use super::moments::Moments;
 use super::pair::{Pair, Separation};
-use crate::special::lanes::Lanes;
+use f64_lanes::Lanes;
 
 /// The kernel $P^S_j = \bar x_j / 4\pi|\bar x|^3$; three entries, in units of 1/length².
 #[derive(Clone, Copy, Debug, Default)]

@@ -7,7 +7,7 @@ use pulp::Simd;
 use super::modes::{Kernel, Parity};
 use super::moments::Moments;
 use super::pair::{Pair, Separation};
-use crate::special::lanes::Lanes;
+use f64_lanes::Lanes;
 
 /// The single-layer kernel $S_{ij} = (\delta_{ij}/|\bar x| + \bar x_i \bar x_j/|\bar x|^3)/8\pi$ for viscosity 1; nine entries,
 /// row by row, in units of 1/length.

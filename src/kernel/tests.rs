@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::modes::Parity;
 use super::pair::Pair;
 use super::*;
-use crate::special::lanes::Lanes;
+use f64_lanes::Lanes;
 
 /// A row of a table of tests/data: geometry, mode, and the entries of every kernel in the order of its header.
 struct Row {

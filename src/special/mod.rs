@@ -1,5 +1,3 @@
-//! Special functions: the toroidal Legendre functions the modal kernels are made of, and the SIMD
-//! arithmetic they are computed in.
+//! Special functions: the toroidal Legendre functions the modal kernels are made of.
 
-pub(crate) mod lanes;
 pub mod toroidal;

@@ -16,7 +16,7 @@
 
 use pulp::{Simd, WithSimd};
 
-use crate::special::lanes::Lanes;
+use f64_lanes::Lanes;
 
 /// $\chi - 1$ that goes with upward recurrence for degrees up to `n_max`: $n\\,\mathrm{acosh}\\,\chi < 1$.
 fn upward_limit(n_max: usize) -> f64 {

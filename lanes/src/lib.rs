@@ -1,25 +1,38 @@
 //! Arithmetic on one SIMD register of doubles, written like arithmetic on doubles.
 //!
-//! The instruction set is chosen at run time (`pulp::Arch`), so the same binary uses AVX-512 where there
-//! is one. Buffers handed to vectorised code are padded to [`PADDING`] entries, the widest register.
+//! The instruction set is chosen at run time, so the same binary uses AVX-512 where there is one: by
+//! [`pulp::Arch`] where arithmetic and square roots do, by [`dispatch`] where the approximate reciprocal
+//! square root of the [`Isa`] is wanted too. Buffers handed to vectorised code are padded to [`PADDING`]
+//! entries, the widest register.
+//!
+//! Two rules keep the code fast: everything that takes a [`Lanes`] is `#[inline(always)]`, and none of it
+//! is a closure, since a closure that is not inlined is compiled without the instruction set.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 use pulp::Simd;
 
+mod isa;
+
+pub use isa::{Isa, Precision, WithIsa, dispatch};
+
 /// Every vectorised buffer has a multiple of this many entries.
-pub(crate) const PADDING: usize = 8;
+pub const PADDING: usize = 8;
 
 /// `len` rounded up to the padding.
-pub(crate) fn padded(len: usize) -> usize {
+pub const fn padded(len: usize) -> usize {
     len.next_multiple_of(PADDING)
 }
 
 /// One register of doubles.
 #[derive(Clone, Copy)]
-pub(crate) struct Lanes<S: Simd>(pub S, pub S::f64s);
+pub struct Lanes<S: Simd>(pub S, pub S::f64s);
 
 impl<S: Simd> Lanes<S> {
+    /// How many doubles a register holds.
+    pub const COUNT: usize = size_of::<S::f64s>() / size_of::<f64>();
+
+    /// `x` in every lane.
     #[inline(always)]
     pub fn splat(simd: S, x: f64) -> Self {
         Self(simd, simd.splat_f64s(x))
@@ -37,26 +50,31 @@ impl<S: Simd> Lanes<S> {
         S::as_mut_simd_f64s(buffer).0[index] = self.1;
     }
 
+    /// `self * a + b`, rounded once where the machine can.
     #[inline(always)]
     pub fn mul_add(self, a: Self, b: Self) -> Self {
         Self(self.0, self.0.mul_add_e_f64s(self.1, a.1, b.1))
     }
 
+    /// Square root.
     #[inline(always)]
     pub fn sqrt(self) -> Self {
         Self(self.0, self.0.sqrt_f64s(self.1))
     }
 
+    /// The sum of the lanes.
     #[inline(always)]
     pub fn sum(self) -> f64 {
         self.0.reduce_sum_f64s(self.1)
     }
 
+    /// The smallest lane.
     #[inline(always)]
     pub fn min(self) -> f64 {
         self.0.reduce_min_f64s(self.1)
     }
 
+    /// The largest lane.
     #[inline(always)]
     pub fn max(self) -> f64 {
         self.0.reduce_max_f64s(self.1)
@@ -67,6 +85,15 @@ impl<S: Simd> Lanes<S> {
     pub fn select_less(self, bound: Self, yes: Self, no: Self) -> Self {
         let mask = self.0.less_than_f64s(self.1, bound.1);
         Self(self.0, self.0.select_f64s(mask, yes.1, no.1))
+    }
+}
+
+impl<S: Isa> Lanes<S> {
+    /// $1/\sqrt x$ to the precision asked for, where $x > 0$; 0 where $x = 0$.
+    #[inline(always)]
+    pub fn rsqrt_or_zero(self, precision: Precision) -> Self {
+        let zero = Self::splat(self.0, 0.0);
+        zero.select_less(self, self.0.rsqrt(self, precision), zero)
     }
 }
 
@@ -103,6 +130,13 @@ operator!(Sub, sub, sub_f64s);
 operator!(Mul, mul, mul_f64s);
 operator!(Div, div, div_f64s);
 
+impl<S: Simd> AddAssign for Lanes<S> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
 impl<S: Simd> Neg for Lanes<S> {
     type Output = Self;
     #[inline(always)]
@@ -110,3 +144,6 @@ impl<S: Simd> Neg for Lanes<S> {
         Self(self.0, self.0.neg_f64s(self.1))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,16 @@
+//! Fast summation of Stokeslets, stresslets, rotlets and sources.
+
+mod direct;
+mod error;
+mod gridding;
+mod kernel;
+mod near_field;
+mod plan;
+mod prolate;
+mod splitting;
+mod tree;
+mod waves;
+mod window;
+
+#[doc(inline)]
+pub use error::FmmError;

@@ -2,14 +2,18 @@
 
 mod direct;
 mod error;
+mod gemm;
 mod gridding;
 mod kernel;
 mod near_field;
 mod plan;
 mod prolate;
 mod splitting;
+mod symbol;
+mod transfer;
+mod transform;
+mod translate;
 mod tree;
-mod waves;
 mod window;
 
 #[doc(inline)]

@@ -1,0 +1,83 @@
+//! What a kernel is to the grids: charges laid on them, and potentials read off.
+
+use crate::kernel::{Laplace, Pair, Stokes};
+use crate::symbol::{self, Term};
+
+/// Most densities and potentials of any kernel.
+pub(crate) const FIELDS: usize = 4;
+
+/// The far side of a kernel.
+///
+/// A source lays on each of `DENSITIES` scalar fields $c\\,\delta(y - y_0) + d\cdot\nabla\delta(y - y_0)$, with
+/// its charge $c$ and, if there are `DIPOLES`, its dipole $d$. The kernel's symbol makes `POTENTIALS` scalar
+/// fields of these, and a target reads them and, for `GRADIENTS`, their derivatives.
+pub(crate) trait Far: Pair {
+    const DENSITIES: usize;
+    const POTENTIALS: usize;
+    const DIPOLES: bool;
+    const GRADIENTS: bool;
+
+    /// The kernel as products among plane waves.
+    fn symbol() -> Vec<Term>;
+
+    /// Charges and dipoles of a source of this strength.
+    fn charges(strength: &[f64]) -> ([f64; FIELDS], [[f64; 3]; FIELDS]);
+}
+
+impl<const STRENGTHS: usize, const OUTPUTS: usize> Far for Stokes<STRENGTHS, OUTPUTS> {
+    const DENSITIES: usize = if STRENGTHS == 3 { 3 } else { 4 };
+    const POTENTIALS: usize = if OUTPUTS == 3 { 3 } else { 4 };
+    const DIPOLES: bool = STRENGTHS != 3;
+    const GRADIENTS: bool = OUTPUTS == 13;
+
+    fn symbol() -> Vec<Term> {
+        symbol::stokes(Self::DENSITIES == 4, Self::POTENTIALS == 4)
+    }
+
+    #[inline(always)]
+    fn charges(strength: &[f64]) -> ([f64; FIELDS], [[f64; 3]; FIELDS]) {
+        let mut charge = [0.0; FIELDS];
+        let mut dipole = [[0.0; 3]; FIELDS];
+        if STRENGTHS != 6 {
+            charge[..3].copy_from_slice(&strength[..3]);
+        }
+        if STRENGTHS != 3 {
+            // A stresslet is a force dipole, symmetric, and a sink: T_ijk = S_ij,k + S_ik,j + delta_jk lap B_,i.
+            let first = if STRENGTHS == 6 { 0 } else { 3 };
+            let (q, n) = (&strength[first..][..3], &strength[first + 3..][..3]);
+            for j in 0..3 {
+                for k in 0..3 {
+                    dipole[j][k] = q[j] * n[k] + n[j] * q[k];
+                }
+                charge[3] -= q[j] * n[j];
+            }
+        }
+        if STRENGTHS == 13 {
+            // A rotlet is an antisymmetric force dipole.
+            let t = &strength[9..12];
+            for j in 0..3 {
+                let (k, l) = ((j + 1) % 3, (j + 2) % 3);
+                dipole[j][l] -= 0.5 * t[k];
+                dipole[j][k] += 0.5 * t[l];
+            }
+            charge[3] += strength[12];
+        }
+        (charge, dipole)
+    }
+}
+
+impl<const OUTPUTS: usize> Far for Laplace<OUTPUTS> {
+    const DENSITIES: usize = 1;
+    const POTENTIALS: usize = 1;
+    const DIPOLES: bool = false;
+    const GRADIENTS: bool = OUTPUTS == 4;
+
+    fn symbol() -> Vec<Term> {
+        symbol::laplace()
+    }
+
+    #[inline(always)]
+    fn charges(strength: &[f64]) -> ([f64; FIELDS], [[f64; 3]; FIELDS]) {
+        ([strength[0], 0.0, 0.0, 0.0], [[0.0; 3]; FIELDS])
+    }
+}

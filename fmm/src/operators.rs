@@ -1,0 +1,68 @@
+//! All that depends on the kernel and the tolerance alone, shared by every level of every tree.
+
+use std::f64::consts::PI;
+
+use crate::far::Far;
+use crate::parameters::Parameters;
+use crate::splitting::{ROOT_PERIOD, ROOT_RADIUS, Splitting};
+use crate::symbol::Symbol;
+use crate::transfer::{GridShape, Transfer};
+use crate::transform::{AxisWaves, Ball, Transform};
+use crate::translate::Turns;
+use crate::window::Window;
+
+/// Operators of the far field, and the residual's polynomials.
+#[derive(Clone, Debug)]
+pub(crate) struct Operators {
+    pub parameters: Parameters,
+    pub window: Window,
+    pub shape: GridShape,
+    /// The whole of the free-space kernel, mollified at half the root's side.
+    pub root: Across,
+    /// The difference of two mollified kernels, in a box of side 1 and its colleagues.
+    pub level: Across,
+    pub turns: Turns,
+    pub transfer: Transfer,
+    /// Mollified chain, order by order from 1, as polynomials in $s = 2(r/L)^2 - 1$, highest power first.
+    pub mollified: Vec<Vec<f64>>,
+}
+
+/// From charges on a grid to potentials on a grid.
+#[derive(Clone, Debug)]
+pub(crate) struct Across {
+    pub transform: Transform,
+    pub symbol: Symbol,
+}
+
+impl Operators {
+    pub fn new<K: Far>(parameters: Parameters) -> Self {
+        let splitting = Splitting::new(parameters.waves);
+        let window = Window::new(parameters.width, parameters.points, parameters.waves);
+        let terms = K::symbol();
+        let cutoff = 2.0 * splitting.bandwidth();
+        let across = |spacing: f64, radius: Option<f64>, biharmonic: &dyn Fn(f64) -> f64| {
+            let ball = Ball::new(cutoff / spacing);
+            let waves: Vec<f64> = (0..ball.waves).map(|j| spacing * j as f64).collect();
+            let matrix = window.waves_matrix(&waves);
+            let axis = AxisWaves::new(parameters.points, ball.waves, [matrix.even, matrix.odd]);
+            let symbol = Symbol::new(&terms, &ball, spacing, radius, biharmonic);
+            Across { transform: Transform { ball, axis }, symbol }
+        };
+        let level = across(2.0 * PI / 3.0, None, &|k| splitting.difference(k));
+        let root = across(2.0 * PI / ROOT_PERIOD, Some(ROOT_RADIUS), &|k| splitting.free_space(k));
+        let reach = (parameters.points + parameters.width).div_ceil(2);
+        let transfer = Transfer::new(parameters.points, reach, &window.transfer(reach));
+        let mollified =
+            (1..=K::ORDERS[1]).map(|order| splitting.polynomial(order, parameters.accuracy)).collect();
+        Self {
+            shape: GridShape { points: parameters.points },
+            turns: Turns::new(&level.transform.ball),
+            root,
+            level,
+            transfer,
+            mollified,
+            window,
+            parameters,
+        }
+    }
+}

@@ -1,0 +1,221 @@
+//! What a kernel is among plane waves.
+//!
+//! One scalar does everything: the biharmonic function $B = r/8\pi$ split at a length, with transform
+//! $-\Gamma(k)/k^4$. Every kernel here is a differential operator on $B$, so every potential is a sum of
+//! products of densities with tables over the waves, and of exchanges of cosines and sines where an odd
+//! derivative is taken.
+
+use std::f64::consts::PI;
+
+use f64_lanes::Lanes;
+use pulp::Simd;
+
+use crate::transform::{BATCH, Ball, CLASSES};
+
+/// A product of the symbol: potential = $\pm$ derivative along `axes` of (table times density).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Term {
+    pub potential: usize,
+    pub density: usize,
+    /// Bit `axis` is set where one derivative is taken along it.
+    pub axes: usize,
+    /// The sign of the derivative.
+    pub sign: f64,
+    /// What multiplies $\Gamma/k^4$, the derivatives without their $\pm$ included.
+    pub polynomial: fn([f64; 3]) -> f64,
+    /// Degree of the polynomial.
+    pub degree: i32,
+    /// What a box of side 1 gets from the sum of the densities to make up for the quadratic part that was
+    /// taken from $B$ at infinity, times the radius of truncation.
+    pub constant: f64,
+}
+
+fn square(k: [f64; 3]) -> f64 {
+    k.iter().map(|k| k * k).sum()
+}
+
+/// The symbol of Stokes flow: densities are the force (3) and, if `flux`, sources; potentials are the velocity
+/// (3) and, if `pressure`, the pressure.
+pub(crate) fn stokes(flux: bool, pressure: bool) -> Vec<Term> {
+    let across: [fn([f64; 3]) -> f64; 3] = [
+        |[_, y, z]| y * y + z * z,
+        |[x, _, z]| x * x + z * z,
+        |[x, y, _]| x * x + y * y,
+    ];
+    let between: [fn([f64; 3]) -> f64; 3] =
+        [|[_, y, z]| y * z, |[x, _, z]| x * z, |[x, y, _]| x * y];
+    let along: [fn([f64; 3]) -> f64; 3] = [
+        |k| k[0] * square(k),
+        |k| k[1] * square(k),
+        |k| k[2] * square(k),
+    ];
+    let mut terms = Vec::new();
+    for i in 0..3 {
+        for j in 0..3 {
+            // u = (I lap - grad grad) B * F.
+            terms.push(if i == j {
+                Term {
+                    potential: i,
+                    density: j,
+                    axes: 0,
+                    sign: 1.0,
+                    polynomial: across[i],
+                    degree: 2,
+                    constant: 0.25 / PI,
+                }
+            } else {
+                Term {
+                    potential: i,
+                    density: j,
+                    axes: 1 << i | 1 << j,
+                    sign: 1.0,
+                    polynomial: between[3 - i - j],
+                    degree: 2,
+                    constant: 0.0,
+                }
+            });
+        }
+        let gradient = |potential, density| Term {
+            potential,
+            density,
+            axes: 1 << i,
+            sign: -1.0,
+            polynomial: along[i],
+            degree: 3,
+            constant: 0.0,
+        };
+        if flux {
+            terms.push(gradient(i, 3));
+        }
+        if pressure {
+            terms.push(gradient(3, i));
+        }
+    }
+    terms
+}
+
+/// The symbol of the potential of charges.
+pub(crate) fn laplace() -> Vec<Term> {
+    vec![Term {
+        potential: 0,
+        density: 0,
+        axes: 0,
+        sign: 1.0,
+        polynomial: square,
+        degree: 2,
+        constant: 0.375 / PI,
+    }]
+}
+
+/// A symbol on the waves of a box of side 1.
+#[derive(Clone, Debug)]
+pub(crate) struct Symbol {
+    waves: usize,
+    potentials: usize,
+    terms: Vec<Weighted>,
+}
+
+#[derive(Clone, Debug)]
+struct Weighted {
+    term: Term,
+    /// For each wave.
+    table: Vec<f64>,
+}
+
+impl Symbol {
+    /// Waves `spacing` times $j$, with `biharmonic(k)` the transform of the part of $B$ in question, $-\Gamma/k^4$; in the
+    /// free-space case $B$ is truncated at `radius`, and what its quadratic part did is put back.
+    pub fn new(
+        terms: &[Term],
+        ball: &Ball,
+        spacing: f64,
+        radius: Option<f64>,
+        biharmonic: impl Fn(f64) -> f64,
+    ) -> Self {
+        let cell = (spacing / (2.0 * PI)).powi(3);
+        let table = |term: &Term| {
+            ball.indices()
+                .map(|j| {
+                    let k = j.map(|j| spacing * j as f64);
+                    let length = square(k).sqrt();
+                    if length == 0.0 {
+                        return radius.map_or(0.0, |radius| term.constant / radius);
+                    }
+                    // Each wave stands for its mirror images too.
+                    let images: f64 = j.map(|j| if j == 0 { 1.0 } else { 2.0 }).iter().product();
+                    -images * cell * biharmonic(length) * (term.polynomial)(k)
+                })
+                .collect()
+        };
+        let terms: Vec<_> = terms
+            .iter()
+            .map(|&term| Weighted {
+                term,
+                table: table(&term),
+            })
+            .collect();
+        let potentials = 1 + terms.iter().map(|t| t.term.potential).max().unwrap_or(0);
+        Self {
+            waves: ball.len,
+            potentials,
+            terms,
+        }
+    }
+
+    /// Potentials of densities, both `[field][class of x][class of y][wave][class of z][8]`, in boxes of side `side`.
+    #[inline(always)]
+    pub fn apply<S: Simd>(&self, simd: S, side: f64, densities: &[f64], potentials: &mut [f64]) {
+        let field = CLASSES * self.waves * BATCH;
+        let row = 2 * BATCH;
+        for potential in 0..self.potentials {
+            let out = &mut potentials[potential * field..][..field];
+            out.fill(0.0);
+            for Weighted { term, table } in
+                self.terms.iter().filter(|t| t.term.potential == potential)
+            {
+                let scale = term.sign * side.powi(1 - term.degree);
+                let density = &densities[term.density * field..][..field];
+                // Axis x is the highest of the classes' digits, y the next, z stands after the wave.
+                let [x, y, z] = [0, 1, 2].map(|axis| term.axes >> axis & 1);
+                for class in 0..4 {
+                    let [class_x, class_y] = [class >> 1, class & 1];
+                    let sign = if (class_x & x) ^ (class_y & y) == 1 {
+                        -scale
+                    } else {
+                        scale
+                    };
+                    let from = (2 * (class_x ^ x) + (class_y ^ y)) * self.waves * row;
+                    let from = &density[from..][..self.waves * row];
+                    let to = &mut out[class * self.waves * row..][..self.waves * row];
+                    for (wave, &factor) in table.iter().enumerate() {
+                        let (even, odd) =
+                            (sign * factor, if z == 1 { -sign } else { sign } * factor);
+                        let from = &from[wave * row..][..row];
+                        let to = &mut to[wave * row..][..row];
+                        add(simd, even, &from[z * BATCH..][..BATCH], &mut to[..BATCH]);
+                        add(
+                            simd,
+                            odd,
+                            &from[(1 - z) * BATCH..][..BATCH],
+                            &mut to[BATCH..],
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// `to += factor * from` for eight boxes.
+#[inline(always)]
+fn add<S: Simd>(simd: S, factor: f64, from: &[f64], to: &mut [f64]) {
+    let factor = Lanes::splat(simd, factor);
+    for register in 0..BATCH / Lanes::<S>::COUNT {
+        factor
+            .mul_add(
+                Lanes::load(simd, from, register),
+                Lanes::load(simd, to, register),
+            )
+            .store(to, register);
+    }
+}

@@ -1,6 +1,38 @@
 //! The adaptive tree: boxes that carry grids, level by level, and the leaf cells that hang off them.
 
+mod near;
+mod refine;
+mod root;
+mod sorting;
+#[cfg(test)]
+mod tests;
+
+use std::cmp::Ordering;
 use std::ops::Range;
+
+use refine::Cells;
+use root::Root;
+use sorting::Keys;
+
+/// No such box.
+pub(crate) const NONE: u32 = u32::MAX;
+/// Colleagues a box can have, itself included.
+pub(crate) const COLLEAGUES: usize = 27;
+/// Points that are enough to choose the side of the root by.
+const SAMPLE: usize = 1 << 16;
+/// Targets whose sources within reach are counted to estimate the cost of a tree.
+const COUNTED: usize = 1024;
+
+/// What the pieces of a sum take, in nanoseconds on one thread.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Costs {
+    /// One pair of points within the reach of its residual.
+    pub pair: f64,
+    /// One gridded box: its transforms, its transfers from and to its parent, its translations.
+    pub grid: f64,
+    /// One point spread onto a grid and interpolated from it.
+    pub point: f64,
+}
 
 /// Points in the tree's order: every box and every leaf holds a contiguous range of them.
 #[derive(Clone, Debug, Default)]
@@ -21,7 +53,7 @@ pub(crate) struct SortedPoints {
 #[derive(Clone, Debug)]
 pub(crate) struct Tree {
     pub sources: SortedPoints,
-    /// `None` if the targets are the sources.
+    /// `None` if the targets are the sources; ranges of targets are then those of the sources.
     pub targets: Option<SortedPoints>,
     /// Finest last; `levels[0]` is the root alone.
     pub levels: Vec<Level>,
@@ -32,11 +64,13 @@ pub(crate) struct Tree {
 pub(crate) struct Level {
     /// Side of its boxes.
     pub side: f64,
+    /// In Morton order of their places.
     pub boxes: Vec<GriddedBox>,
 }
 
 #[derive(Clone, Debug)]
 pub(crate) struct GriddedBox {
+    /// Exact, as are differences of centres: a point lies within half a side of it, up to rounding of the point's.
     pub center: [f64; 3],
     /// Place among the boxes of the level, in box sides from the corner of the root.
     pub place: [i64; 3],
@@ -47,8 +81,13 @@ pub(crate) struct GriddedBox {
     /// All points inside, those of gridded children too.
     pub sources: Range<u32>,
     pub targets: Range<u32>,
+    /// Its children with grids, as indices of the level below.
+    pub children: Range<u32>,
     /// Its children without grids, as indices of `Tree::leaves`.
     pub leaves: Range<u32>,
+    /// The gridded boxes of its level around it, itself in the middle: at $d_x + 1 + 3 (d_y + 1) + 9 (d_z + 1)$
+    /// the one whose place is $d$ further, or [`NONE`].
+    pub colleagues: [u32; COLLEAGUES],
 }
 
 #[derive(Clone, Debug)]
@@ -57,7 +96,7 @@ pub(crate) struct Leaf {
     pub side: f64,
     pub sources: Range<u32>,
     pub targets: Range<u32>,
-    /// What its targets see directly, the leaf itself included.
+    /// What its targets see directly, the leaf itself included, in the order of the sources.
     pub near: Vec<Near>,
 }
 
@@ -67,4 +106,148 @@ pub(crate) struct Near {
     pub sources: Range<u32>,
     /// Length of the residual.
     pub reach: f64,
+}
+
+impl Tree {
+    /// The tree over finite points, refined where `costs` say it pays. Targets are the sources if there are none.
+    ///
+    /// The root is up to twice as large as the points need, so that leaves come in more sizes than powers of two:
+    /// each of a few sides is tried on a sample of the points, and the one with the cheapest tree is taken.
+    pub fn new(sources: &[[f64; 3]], targets: Option<&[[f64; 3]]>, costs: &Costs) -> Tree {
+        let roots = Root::candidates(sources, targets);
+        let points = sources.len() + targets.map_or(0, <[_]>::len);
+        let stride = points.div_ceil(SAMPLE).max(1);
+        let thinned_sources = sorting::thinned(sources, stride);
+        let thinned_targets = targets.map(|targets| sorting::thinned(targets, stride));
+        let thinned_costs = costs.thinned(stride as f64);
+        let cost = |root: &Root| {
+            Tree::inside(
+                root,
+                &thinned_sources,
+                thinned_targets.as_deref(),
+                &thinned_costs,
+            )
+            .cost(&thinned_costs)
+        };
+        let root = roots
+            .into_iter()
+            .map(|root| (cost(&root), root))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .expect("there are candidates")
+            .1;
+        Tree::inside(&root, sources, targets, costs)
+    }
+
+    /// The tree that has the given root.
+    fn inside(
+        root: &Root,
+        sources: &[[f64; 3]],
+        targets: Option<&[[f64; 3]]>,
+        costs: &Costs,
+    ) -> Tree {
+        let (sources, source_keys) = sorting::sorted(sources, root);
+        let (targets, target_keys) = targets
+            .map(|targets| sorting::sorted(targets, root))
+            .unzip();
+        let keys = Keys {
+            sources: &source_keys,
+            targets: target_keys.as_deref().unwrap_or(&source_keys),
+        };
+        let cells = Cells::new(&keys, root.finest, costs);
+        let (levels, leaves) = cells.boxes_and_leaves(root);
+        let mut tree = Tree {
+            sources,
+            targets,
+            levels,
+            leaves,
+        };
+        near::fill(&mut tree, &cells);
+        tree
+    }
+
+    /// Coordinates of the targets, be they the sources or not.
+    pub fn target_points(&self) -> &SortedPoints {
+        self.targets.as_ref().unwrap_or(&self.sources)
+    }
+
+    /// Pairs within the reach of their residuals, counted for some of the targets.
+    pub fn pairs(&self) -> f64 {
+        let positions = &self.target_points().positions;
+        let targets = positions[0].len();
+        let stride = targets.div_ceil(COUNTED).max(1);
+        let mut counted = 0;
+        let mut pairs = 0;
+        for leaf in &self.leaves {
+            let first = (leaf.targets.start as usize).next_multiple_of(stride);
+            for i in (first..leaf.targets.end as usize).step_by(stride) {
+                let target = positions.each_ref().map(|x| x[i]);
+                pairs += leaf
+                    .near
+                    .iter()
+                    .map(|near| self.within(target, near))
+                    .sum::<usize>();
+                counted += 1;
+            }
+        }
+        pairs as f64 * targets as f64 / f64::max(counted as f64, 1.0)
+    }
+
+    /// How many of the sources are within reach of a point.
+    fn within(&self, point: [f64; 3], near: &Near) -> usize {
+        let range = near.sources.start as usize..near.sources.end as usize;
+        let [x, y, z] = self.sources.positions.each_ref().map(|x| &x[range.clone()]);
+        let reach = near.reach * near.reach;
+        let mut within = 0;
+        for i in 0..x.len() {
+            let (dx, dy, dz) = (x[i] - point[0], y[i] - point[1], z[i] - point[2]);
+            within += usize::from(dx * dx + dy * dy + dz * dz < reach);
+        }
+        within
+    }
+
+    /// Estimated time of a sum in nanoseconds on one thread.
+    pub fn cost(&self, costs: &Costs) -> f64 {
+        let points = self.sources.order.len() + self.target_points().order.len();
+        let boxes = self
+            .levels
+            .iter()
+            .map(|level| level.boxes.len())
+            .sum::<usize>();
+        self.pairs() * costs.pair + boxes as f64 * costs.grid + 0.5 * points as f64 * costs.point
+    }
+}
+
+impl Costs {
+    /// Those of a sample, one of `stride` points, for which every point stands.
+    fn thinned(&self, stride: f64) -> Costs {
+        Costs {
+            pair: self.pair * stride * stride,
+            grid: self.grid,
+            point: self.point * stride,
+        }
+    }
+}
+
+impl Level {
+    /// Index of the box at a place.
+    pub fn find(&self, place: [i64; 3]) -> Option<u32> {
+        self.boxes
+            .binary_search_by(|one| morton(one.place, place))
+            .ok()
+            .map(|i| i as u32)
+    }
+}
+
+/// Order of two places along the Morton curve, z the slowest.
+fn morton(a: [i64; 3], b: [i64; 3]) -> Ordering {
+    let differs = |axis: usize| (a[axis] ^ b[axis]) as u64;
+    let mut slowest = 2;
+    for axis in [1, 0] {
+        let (candidate, best) = (differs(axis), differs(slowest));
+        // The highest bit of `candidate` is above that of `best`.
+        if best < candidate && best < (best ^ candidate) {
+            slowest = axis;
+        }
+    }
+    a[slowest].cmp(&b[slowest])
 }

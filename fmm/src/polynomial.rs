@@ -25,7 +25,9 @@ pub(crate) fn fit(samples: &[Sample], degree: usize) -> (Vec<f64>, f64) {
     let design = Mat::from_fn(samples.len(), degree + 1, |i, j| {
         chebyshev(samples[i].s, j) / samples[i].allowed
     });
-    let values = Mat::from_fn(samples.len(), 1, |i, _| samples[i].value / samples[i].allowed);
+    let values = Mat::from_fn(samples.len(), 1, |i, _| {
+        samples[i].value / samples[i].allowed
+    });
     let series = design.qr().solve_lstsq(&values);
     let error = (&design * &series - &values).norm_max();
     let series: Vec<f64> = series.col(0).iter().copied().collect();
@@ -61,7 +63,11 @@ mod tests {
         let samples: Vec<Sample> = (0..20)
             .map(|i| {
                 let s = node(i, 20);
-                Sample { s, value: 3.0 * s * s * s - s + 0.5, allowed: 1.0 + s * s }
+                Sample {
+                    s,
+                    value: 3.0 * s * s * s - s + 0.5,
+                    allowed: 1.0 + s * s,
+                }
             })
             .collect();
         let (polynomial, error) = fit(&samples, 4);
@@ -77,7 +83,11 @@ mod tests {
         let samples: Vec<Sample> = (0..16)
             .map(|i| {
                 let s = node(i, 16);
-                Sample { s, value: s * s, allowed: 1.0 }
+                Sample {
+                    s,
+                    value: s * s,
+                    allowed: 1.0,
+                }
             })
             .collect();
         let (polynomial, error) = fit(&samples, 1);

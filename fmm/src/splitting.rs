@@ -98,7 +98,10 @@ impl Splitting {
             .rule()
             .map(|(x, weight)| {
                 let cx = c * x;
-                weight * self.psi.value(x) * (-cx * cx).powi(m as i32) * scaled_bessel(m, cx * t.sqrt())
+                weight
+                    * self.psi.value(x)
+                    * (-cx * cx).powi(m as i32)
+                    * scaled_bessel(m, cx * t.sqrt())
             })
             .sum();
         sum / (8.0 * PI * c0 * c0)
@@ -197,12 +200,66 @@ mod tests {
 
     /// Waves, $t$, $b_1..b_4$: from $\Phi$, $\psi$, $\psi'$, $\psi''$ in closed form, mpmath with 60 digits.
     const CHAIN: [(usize, f64, [f64; ORDERS]); 6] = [
-        (17, 0.01, [0.1302345948781652, -0.72514843765430474, 6.9533938314748712, -75.258584789133112]),
-        (17, 0.3, [0.071495739542042936, -0.21044977679305143, 1.5409879916759861, -15.058517145394085]),
-        (17, 0.9, [0.041940982173767668, -0.046599367362002748, 0.15524541547902865, -0.85895820114190343]),
-        (32, 0.01, [0.17420490515453389, -1.8253690331207742, 34.276964283826731, -749.85939396141857]),
-        (32, 0.3, [0.072576162324883735, -0.23898471124979426, 2.275339758358289, -33.616049461716209]),
-        (32, 0.9, [0.041941010086616879, -0.046601122267834496, 0.15533706918247548, -0.86298326284413106]),
+        (
+            17,
+            0.01,
+            [
+                0.1302345948781652,
+                -0.72514843765430474,
+                6.9533938314748712,
+                -75.258584789133112,
+            ],
+        ),
+        (
+            17,
+            0.3,
+            [
+                0.071495739542042936,
+                -0.21044977679305143,
+                1.5409879916759861,
+                -15.058517145394085,
+            ],
+        ),
+        (
+            17,
+            0.9,
+            [
+                0.041940982173767668,
+                -0.046599367362002748,
+                0.15524541547902865,
+                -0.85895820114190343,
+            ],
+        ),
+        (
+            32,
+            0.01,
+            [
+                0.17420490515453389,
+                -1.8253690331207742,
+                34.276964283826731,
+                -749.85939396141857,
+            ],
+        ),
+        (
+            32,
+            0.3,
+            [
+                0.072576162324883735,
+                -0.23898471124979426,
+                2.275339758358289,
+                -33.616049461716209,
+            ],
+        ),
+        (
+            32,
+            0.9,
+            [
+                0.041941010086616879,
+                -0.046601122267834496,
+                0.15533706918247548,
+                -0.86298326284413106,
+            ],
+        ),
     ];
 
     /// Waves, $k$, transform of the difference (mpmath, 60 digits) and of the root's kernel (its integral by mpmath's quadrature).
@@ -223,7 +280,10 @@ mod tests {
             let splitting = Splitting::new(waves);
             for (order, expected) in (1..).zip(chain) {
                 let error = splitting.mollified(order, t) - expected;
-                assert!(error.abs() < 5e-14 * splitting.mollified(order, 0.0).abs(), "{waves} {t} {order}: {error:e}");
+                assert!(
+                    error.abs() < 5e-14 * splitting.mollified(order, 0.0).abs(),
+                    "{waves} {t} {order}: {error:e}"
+                );
             }
         }
     }
@@ -232,8 +292,14 @@ mod tests {
     fn transforms_agree_with_quadrature() {
         for (waves, k, difference, root) in TRANSFORMS {
             let splitting = Splitting::new(waves);
-            assert!((splitting.difference(k) - difference).abs() < 1e-13 * 1e-4, "{waves} {k}");
-            assert!((splitting.free_space(k) - root).abs() < 1e-13 * root.abs(), "{waves} {k}");
+            assert!(
+                (splitting.difference(k) - difference).abs() < 1e-13 * 1e-4,
+                "{waves} {k}"
+            );
+            assert!(
+                (splitting.free_space(k) - root).abs() < 1e-13 * root.abs(),
+                "{waves} {k}"
+            );
         }
     }
 
@@ -241,9 +307,12 @@ mod tests {
     fn transforms_have_no_seams() {
         let splitting = Splitting::new(24);
         let seam = splitting.bandwidth().sqrt();
-        let jump = splitting.difference(seam * (1.0 + 1e-12)) / splitting.difference(seam * (1.0 - 1e-12));
+        let jump =
+            splitting.difference(seam * (1.0 + 1e-12)) / splitting.difference(seam * (1.0 - 1e-12));
         assert!((jump - 1.0).abs() < 1e-11, "{jump}");
-        assert!((truncated_distance(1.0 + 1e-13) / truncated_distance(1.0 - 1e-13) - 1.0).abs() < 1e-11);
+        assert!(
+            (truncated_distance(1.0 + 1e-13) / truncated_distance(1.0 - 1e-13) - 1.0).abs() < 1e-11
+        );
         for m in 0..ORDERS {
             let jump = scaled_bessel(m, 4.0 + 1e-13) / scaled_bessel(m, 4.0 - 1e-13);
             assert!((jump - 1.0).abs() < 1e-11, "{m} {jump}");
@@ -257,7 +326,8 @@ mod tests {
             for order in 1..=ORDERS {
                 let left = splitting.mollified(order, 1.0) / singular(order, 1.0) - 1.0;
                 // At its end the n-th derivative of psi is about (c^2/2)^n psi.
-                let bound = splitting.truncation() * splitting.bandwidth().powi(2 * order as i32 - 2);
+                let bound =
+                    splitting.truncation() * splitting.bandwidth().powi(2 * order as i32 - 2);
                 assert!(left.abs() < bound + 1e-11, "{waves} {order}: {left:e}");
             }
         }
@@ -276,9 +346,15 @@ mod tests {
                     let value = polynomial.iter().fold(0.0, |sum, c| sum * s + c);
                     let error = (value - splitting.mollified(order, t)).abs();
                     let allowed = accuracy * singular(order, t).abs().min(at_zero);
-                    assert!(error < 1.1 * allowed + 1e-14 * at_zero, "{waves} {order} {t}: {error:e} {allowed:e}");
+                    assert!(
+                        error < 1.1 * allowed + 1e-14 * at_zero,
+                        "{waves} {order} {t}: {error:e} {allowed:e}"
+                    );
                 }
-                println!("J = {waves}, accuracy {accuracy:.0e}, order {order}: {} terms", polynomial.len());
+                println!(
+                    "J = {waves}, accuracy {accuracy:.0e}, order {order}: {} terms",
+                    polynomial.len()
+                );
             }
         }
     }

@@ -1,0 +1,1 @@
+//! Numbers of waves, grid points and digits for a tolerance.

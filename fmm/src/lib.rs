@@ -1,7 +1,8 @@
 //! Fast summation of Stokeslets, stresslets, rotlets and sources.
 
-mod direct;
+pub mod direct;
 mod error;
+mod flow;
 mod gridding;
 mod kernel;
 mod near_field;
@@ -14,3 +15,5 @@ mod window;
 
 #[doc(inline)]
 pub use error::FmmError;
+#[doc(inline)]
+pub use flow::{Flow, Output, Strengths, Stresslets};

@@ -1,1 +1,313 @@
-//! (to be written)
+//! Direct sums, pair by pair: the fastest way for a few thousand points, and the measure of every other.
+
+use std::marker::PhantomData;
+
+use f64_lanes::{Isa, Lanes, Precision, WithIsa, dispatch};
+use rayon::prelude::*;
+
+use crate::FmmError;
+use crate::flow::{Flow, Output, Singularities, Strengths, check, check_positions};
+use crate::kernel::{Chain, Laplace, MOST, Pair, Stokes};
+
+/// The flow of `strengths` at `sources`, seen at `targets`, which may be the sources themselves.
+///
+/// A pair at distance zero contributes nothing, and so does one nearer than 1e-40 of the largest coordinate.
+/// Positions and strengths may have any scale: coordinates up to 1e100 in magnitude are taken, and nothing
+/// overflows or underflows on the way that does not in the result. Without a `tolerance` sums are exact to
+/// rounding; with one (1e-12 to 1e-1) each pair's contribution is, relative to its size, within it.
+/// The result does not depend on the number of threads.
+///
+/// # Errors
+///
+/// Arrays of different lengths, numbers that are not finite, coordinates beyond 1e100, a tolerance outside its
+/// range.
+///
+/// # Examples
+///
+/// ```
+/// use stokes_fmm::{Output, Strengths, direct};
+///
+/// let strengths = Strengths { stokeslets: Some(&[[1.0, 0.0, 0.0]]), ..Default::default() };
+/// let flow = direct::sum(&[[0.0; 3]], &strengths, &[[2.0, 0.0, 0.0]], Output::Velocity, None)?;
+/// assert!((flow.velocity[0][0] * 8.0 * std::f64::consts::PI - 1.0).abs() < 1e-15);
+/// # Ok::<(), stokes_fmm::FmmError>(())
+/// ```
+pub fn sum(
+    sources: &[[f64; 3]],
+    strengths: &Strengths,
+    targets: &[[f64; 3]],
+    output: Output,
+    tolerance: Option<f64>,
+) -> Result<Flow, FmmError> {
+    let scale = common_scale(sources, targets)?;
+    strengths.validate(sources.len())?;
+    let precision = precision(tolerance)?;
+    let singularities = strengths.singularities();
+    let records = records(sources, scale, singularities.count(), |index| {
+        let mut all = strengths.of(index, singularities);
+        weigh(&mut all, singularities, scale);
+        all
+    });
+    let problem = Problem {
+        records,
+        targets: scaled(targets, scale),
+        precision,
+    };
+    let columns = match (singularities, output) {
+        (Singularities::Stokeslets, Output::Velocity) => problem.sum::<Stokes<3, 3>>(),
+        (Singularities::Stokeslets, Output::Pressure) => problem.sum::<Stokes<3, 4>>(),
+        (Singularities::Stokeslets, Output::Gradient) => problem.sum::<Stokes<3, 13>>(),
+        (Singularities::Stresslets, Output::Velocity) => problem.sum::<Stokes<6, 3>>(),
+        (Singularities::Stresslets, Output::Pressure) => problem.sum::<Stokes<6, 4>>(),
+        (Singularities::Stresslets, Output::Gradient) => problem.sum::<Stokes<6, 13>>(),
+        (Singularities::Both, Output::Velocity) => problem.sum::<Stokes<9, 3>>(),
+        (Singularities::Both, Output::Pressure) => problem.sum::<Stokes<9, 4>>(),
+        (Singularities::Both, Output::Gradient) => problem.sum::<Stokes<9, 13>>(),
+        (Singularities::All, Output::Velocity) => problem.sum::<Stokes<13, 3>>(),
+        (Singularities::All, Output::Pressure) => problem.sum::<Stokes<13, 4>>(),
+        (Singularities::All, Output::Gradient) => problem.sum::<Stokes<13, 13>>(),
+    };
+    Ok(flow(&columns, output, targets.len(), scale))
+}
+
+/// The potential $\sum q / 4 \pi r$ of charges, and its gradient if `gradient` (else empty), at `targets`, which
+/// may be the sources themselves. All else is as in [`sum`].
+///
+/// # Errors
+///
+/// Those of [`sum`].
+pub fn laplace(
+    sources: &[[f64; 3]],
+    charges: &[f64],
+    targets: &[[f64; 3]],
+    gradient: bool,
+    tolerance: Option<f64>,
+) -> Result<(Vec<f64>, Vec<[f64; 3]>), FmmError> {
+    let scale = common_scale(sources, targets)?;
+    check("charges", charges.as_chunks::<1>().0, sources.len())?;
+    let records = records(sources, scale, 1, |index| [charges[index]; MOST]);
+    let problem = Problem {
+        records,
+        targets: scaled(targets, scale),
+        precision: precision(tolerance)?,
+    };
+    let columns = if gradient {
+        problem.sum::<Laplace<4>>()
+    } else {
+        problem.sum::<Laplace<1>>()
+    };
+    let potential = (0..targets.len()).map(|i| columns.at(i, 0) * scale);
+    let slopes = (0..if gradient { targets.len() } else { 0 })
+        .map(|i| [1, 2, 3].map(|k| columns.at(i, k) * scale * scale));
+    Ok((potential.collect(), slopes.collect()))
+}
+
+/// How good the roots must be: $r^{-7}$ has seven times the error of $1/r$.
+pub(crate) fn precision(tolerance: Option<f64>) -> Result<Precision, FmmError> {
+    match tolerance {
+        None => Ok(Precision::Full),
+        Some(t) if !(1e-12..=1e-1).contains(&t) => Err(FmmError::Tolerance(t)),
+        Some(t) if t >= 7e-4 => Ok(Precision::Seed),
+        Some(t) if t >= 7e-8 => Ok(Precision::Single),
+        Some(t) if t >= 7e-12 => Ok(Precision::Close),
+        Some(_) => Ok(Precision::Full),
+    }
+}
+
+/// The power of two that takes the largest coordinate to between 1 and 2.
+fn common_scale(sources: &[[f64; 3]], targets: &[[f64; 3]]) -> Result<f64, FmmError> {
+    let farthest = check_positions("source position", sources)?
+        .max(check_positions("target position", targets)?);
+    // Beyond 1e-300 the inverse power would overflow.
+    Ok(if farthest < 1e-300 {
+        1.0
+    } else {
+        (-farthest.log2().floor()).exp2()
+    })
+}
+
+/// Positions in the scale where the largest coordinate is 1 to 2.
+fn scaled(positions: &[[f64; 3]], scale: f64) -> Vec<[f64; 3]> {
+    let scaled = positions.iter().map(|x| x.map(|x| x * scale));
+    scaled.collect()
+}
+
+/// The velocity of all but the Stokeslets is of one order more in the length: their strengths take that factor.
+fn weigh(strength: &mut [f64; MOST], singularities: Singularities, scale: f64) {
+    match singularities {
+        Singularities::Stokeslets => {}
+        Singularities::Stresslets => strength[..3].iter_mut().for_each(|q| *q *= scale),
+        Singularities::Both | Singularities::All => {
+            strength[3..6].iter_mut().for_each(|q| *q *= scale);
+            strength[9..].iter_mut().for_each(|q| *q *= scale);
+        }
+    }
+}
+
+/// Position and strengths of each source, one source after the other.
+fn records(
+    sources: &[[f64; 3]],
+    scale: f64,
+    strengths: usize,
+    strength: impl Fn(usize) -> [f64; MOST],
+) -> Vec<f64> {
+    let mut records = Vec::with_capacity((3 + strengths) * sources.len());
+    for (index, position) in sources.iter().enumerate() {
+        records.extend(position.map(|x| x * scale));
+        records.extend_from_slice(&strength(index)[..strengths]);
+    }
+    records
+}
+
+/// The columns as a flow, in the user's scale.
+fn flow(columns: &Columns, output: Output, targets: usize, scale: f64) -> Flow {
+    let mut flow = Flow {
+        velocity: (0..targets)
+            .map(|i| [0, 1, 2].map(|k| columns.at(i, k) * scale))
+            .collect(),
+        ..Flow::default()
+    };
+    let slope = |i, k| columns.at(i, k) * scale * scale;
+    if output != Output::Velocity {
+        flow.pressure = (0..targets).map(|i| slope(i, 3)).collect();
+    }
+    if output == Output::Gradient {
+        flow.gradient = (0..targets)
+            .map(|i| [4, 7, 10].map(|row| [0, 1, 2].map(|k| slope(i, row + k))))
+            .collect();
+    }
+    flow
+}
+
+/// Targets that one task takes.
+const CHUNK: usize = 128;
+/// Sources that stay in the first-level cache while the targets of a chunk pass.
+const BLOCK: usize = 256;
+/// Registers of targets that share the broadcast of a source.
+const REGISTERS: usize = 2;
+
+/// Records of sources against targets.
+struct Problem {
+    records: Vec<f64>,
+    targets: Vec<[f64; 3]>,
+    precision: Precision,
+}
+
+/// Results, chunk by chunk of targets, in each chunk output by output.
+struct Columns {
+    outputs: usize,
+    numbers: Vec<f64>,
+}
+
+impl Columns {
+    fn at(&self, target: usize, output: usize) -> f64 {
+        let (chunk, place) = (target / CHUNK, target % CHUNK);
+        self.numbers[(chunk * self.outputs + output) * CHUNK + place]
+    }
+}
+
+impl Problem {
+    fn sum<P: Pair>(mut self) -> Columns {
+        let stride = 3 + P::STRENGTHS;
+        for record in self.records.chunks_exact_mut(stride) {
+            for (strength, factor) in record[3..].iter_mut().zip(P::FACTORS) {
+                *strength *= factor;
+            }
+        }
+        let chunks = self.targets.len().div_ceil(CHUNK);
+        let mut numbers = vec![0.0; chunks * P::OUTPUTS * CHUNK];
+        numbers
+            .par_chunks_mut(P::OUTPUTS * CHUNK)
+            .zip(self.targets.par_chunks(CHUNK))
+            .for_each(|(numbers, targets)| {
+                dispatch(ChunkSum::<P> {
+                    records: &self.records,
+                    targets,
+                    precision: self.precision,
+                    numbers,
+                    pair: PhantomData,
+                });
+            });
+        Columns {
+            outputs: P::OUTPUTS,
+            numbers,
+        }
+    }
+}
+
+/// All sources against one chunk of targets.
+struct ChunkSum<'a, P> {
+    records: &'a [f64],
+    targets: &'a [[f64; 3]],
+    precision: Precision,
+    numbers: &'a mut [f64],
+    pair: PhantomData<P>,
+}
+
+impl<P: Pair> WithIsa for ChunkSum<'_, P> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_isa<S: Isa>(self, simd: S) {
+        let mut positions = [[0.0; CHUNK]; 3];
+        for (i, target) in self.targets.iter().enumerate() {
+            for axis in 0..3 {
+                positions[axis][i] = target[axis];
+            }
+        }
+        let tiles = self.targets.len().div_ceil(REGISTERS * Lanes::<S>::COUNT);
+        for block in self.records.chunks(BLOCK * (3 + P::STRENGTHS)) {
+            for tile in 0..tiles {
+                let precision = self.precision;
+                add_block::<S, P>(simd, block, &positions, tile, precision, self.numbers);
+            }
+        }
+    }
+}
+
+/// A block of sources against the `REGISTERS` registers of targets number `tile`.
+#[inline(always)]
+fn add_block<S: Isa, P: Pair>(
+    simd: S,
+    block: &[f64],
+    positions: &[[f64; CHUNK]; 3],
+    tile: usize,
+    precision: Precision,
+    numbers: &mut [f64],
+) {
+    let zero = Lanes::splat(simd, 0.0);
+    let least = Lanes::splat(simd, LEAST);
+    let mut targets = [[zero; 3]; REGISTERS];
+    for register in 0..REGISTERS {
+        for axis in 0..3 {
+            let index = tile * REGISTERS + register;
+            targets[register][axis] = Lanes::load(simd, &positions[axis], index);
+        }
+    }
+    let mut sums = [[zero; MOST]; REGISTERS];
+    for record in block.chunks_exact(3 + P::STRENGTHS) {
+        for register in 0..REGISTERS {
+            let target = &targets[register];
+            let x = [
+                target[0] - record[0],
+                target[1] - record[1],
+                target[2] - record[2],
+            ];
+            let r2 = crate::kernel::dot(&x, &x);
+            let chain = Chain::full(r2, least, precision);
+            P::add(&x, &chain, &record[3..], &mut sums[register]);
+        }
+    }
+    for register in 0..REGISTERS {
+        for output in 0..P::OUTPUTS {
+            let index = tile * REGISTERS + register + output * (CHUNK / Lanes::<S>::COUNT);
+            (Lanes::load(simd, numbers, index) + sums[register][output]).store(numbers, index);
+        }
+    }
+}
+
+/// Square of the least distance, relative to the largest coordinate, at which two points are not one.
+const LEAST: f64 = 1e-80;
+
+#[cfg(test)]
+mod tests;

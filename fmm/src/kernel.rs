@@ -1,1 +1,199 @@
-//! (to be written)
+//! The kernels, pair by pair: lanes are targets, sources are broadcast.
+//!
+//! Every kernel is algebra on the radial chain of $B = r / 8\pi$, and the algebra of a full kernel and of its
+//! residual is the same: only the chain differs. It is kept in the units in which the full chain is
+//! $B_n = r^{1-2n}$, so $\beta_n = (\frac1r \frac{d}{dr})^n B = \kappa_n B_n$ with [`UNITS`] $\kappa_n$.
+
+use f64_lanes::{Isa, Lanes, Precision};
+
+mod laplace;
+mod stokes;
+
+pub(crate) use laplace::Laplace;
+pub(crate) use stokes::Stokes;
+
+/// $1/8\pi$.
+pub(crate) const EIGHTH: f64 = 0.125 * std::f64::consts::FRAC_1_PI;
+
+/// $\kappa_n$, $n = 1, \dots, 4$: what $\beta_n$ is of $r^{1-2n}$.
+pub(crate) const UNITS: [f64; 4] = [EIGHTH, -EIGHTH, 3.0 * EIGHTH, -15.0 * EIGHTH];
+
+/// Most numbers any source or target has.
+pub(crate) const MOST: usize = 13;
+
+/// What one source does to one register of targets.
+pub(crate) trait Pair: Copy + Send + Sync + 'static {
+    /// Numbers per source.
+    const STRENGTHS: usize;
+    /// Numbers per target.
+    const OUTPUTS: usize;
+    /// First and last order $n$ of the chain that the residual needs.
+    const ORDERS: [usize; 2];
+    /// Factors that the strengths are multiplied by before [`add`](Self::add) sees them.
+    const FACTORS: [f64; MOST];
+
+    /// Adds to `out` what a source of this `strength` does at distances `x` (target minus source).
+    fn add<S: Isa, const SINGULAR: bool>(
+        x: &[Lanes<S>; 3],
+        chain: &Chain<S, SINGULAR>,
+        strength: &[f64],
+        out: &mut [Lanes<S>; MOST],
+    );
+}
+
+/// The radial chain of one register of pairs: of the full kernels if `SINGULAR`, else of their residuals.
+pub(crate) struct Chain<S: Isa, const SINGULAR: bool> {
+    r2: Lanes<S>,
+    /// $B_1, \dots, B_4$.
+    b: [Lanes<S>; 4],
+}
+
+/// $1/r, \dots, 1/r^7$ of $r^2$, and zeros where $r^2$ is `least` or less.
+#[inline(always)]
+fn powers<S: Isa>(r2: Lanes<S>, least: Lanes<S>, precision: Precision) -> [Lanes<S>; 4] {
+    let zero = Lanes::splat(r2.0, 0.0);
+    let inverse = least.select_less(r2, r2.0.rsqrt(r2, precision), zero);
+    let square = inverse * inverse;
+    let cube = square * inverse;
+    let fifth = square * cube;
+    [inverse, cube, fifth, square * fifth]
+}
+
+impl<S: Isa> Chain<S, true> {
+    /// The full chain, without the pairs whose $r^2$ is `least` or less.
+    #[inline(always)]
+    pub fn full(r2: Lanes<S>, least: Lanes<S>, precision: Precision) -> Self {
+        Self {
+            r2,
+            b: powers(r2, least, precision),
+        }
+    }
+}
+
+impl<S: Isa> Chain<S, false> {
+    /// The full chain minus `mollified`, zero from $r^2$ = `reach2` on. Where $r = 0$ only the full part is left out.
+    #[inline(always)]
+    pub fn residual(
+        r2: Lanes<S>,
+        reach2: Lanes<S>,
+        mollified: &[Lanes<S>; 4],
+        precision: Precision,
+    ) -> Self {
+        let zero = Lanes::splat(r2.0, 0.0);
+        let mut b = powers(r2, zero, precision);
+        for order in 0..4 {
+            b[order] = r2.select_less(reach2, b[order] - mollified[order], zero);
+        }
+        Self { r2, b }
+    }
+}
+
+/// Constant times lanes.
+#[inline(always)]
+fn scaled<S: Isa>(factor: f64, x: Lanes<S>) -> Lanes<S> {
+    Lanes::splat(x.0, factor) * x
+}
+
+/// The coefficients of the kernels. The closed forms of the full chain hold for $B_n = r^{1-2n}$ only.
+impl<S: Isa, const SINGULAR: bool> Chain<S, SINGULAR> {
+    /// $p\,B_n - q\,r^2 B_{n+1}$, and $(p - q) B_n$ for the full chain.
+    #[inline(always)]
+    fn combined(&self, p: f64, order: usize, q: f64) -> Lanes<S> {
+        let low = self.b[order - 1];
+        if SINGULAR {
+            return if p - q == 1.0 {
+                low
+            } else {
+                scaled(p - q, low)
+            };
+        }
+        let high = scaled(-q, self.r2);
+        high.mul_add(self.b[order], scaled(p, low))
+    }
+
+    /// Stokeslet: $a = 2 B_1 - r^2 B_2$ of $u = a f + b\,x (x \cdot f)$.
+    #[inline(always)]
+    fn a(&self) -> Lanes<S> {
+        self.combined(2.0, 1, 1.0)
+    }
+
+    /// Stokeslet: $b = B_2$.
+    #[inline(always)]
+    fn b(&self) -> Lanes<S> {
+        self.b[1]
+    }
+
+    /// $a'/r = 3 r^2 B_3 - 4 B_2$.
+    #[inline(always)]
+    fn a_slope(&self) -> Lanes<S> {
+        if SINGULAR {
+            -self.b[1]
+        } else {
+            self.combined(-4.0, 2, -3.0)
+        }
+    }
+
+    /// $b'/r = -3 B_3$.
+    #[inline(always)]
+    fn b_slope(&self) -> Lanes<S> {
+        scaled(-3.0, self.b[2])
+    }
+
+    /// $-\lambda_1/2 = (5 B_2 - 3 r^2 B_3)/2$: $1/r^3$ in full.
+    #[inline(always)]
+    fn dipole(&self) -> Lanes<S> {
+        self.combined(2.5, 2, 1.5)
+    }
+
+    /// $\lambda_2/6 = (7 B_3 - 5 r^2 B_4)/2$: $1/r^5$ in full.
+    #[inline(always)]
+    fn quadrupole(&self) -> Lanes<S> {
+        self.combined(3.5, 3, 2.5)
+    }
+
+    /// Stresslet: $c_5 = B_3$, of densities times $-6$.
+    #[inline(always)]
+    fn c5(&self) -> Lanes<S> {
+        self.b[2]
+    }
+
+    /// Stresslet: $c_3 = (B_2 - r^2 B_3)/2$, zero in full.
+    #[inline(always)]
+    fn c3(&self) -> Lanes<S> {
+        self.combined(0.5, 2, 0.5)
+    }
+
+    /// $c_5'/r = -5 B_4$.
+    #[inline(always)]
+    fn c5_slope(&self) -> Lanes<S> {
+        scaled(-5.0, self.b[3])
+    }
+
+    /// $c_3'/r = -5 (B_3 - r^2 B_4)/2$, zero in full.
+    #[inline(always)]
+    fn c3_slope(&self) -> Lanes<S> {
+        self.combined(-2.5, 3, -2.5)
+    }
+
+    /// $\nabla^2 B / 2 = (3 B_1 - r^2 B_2)/2$: $1/r$ in full.
+    #[inline(always)]
+    fn laplacian(&self) -> Lanes<S> {
+        self.combined(1.5, 1, 0.5)
+    }
+}
+
+/// $a \cdot b$.
+#[inline(always)]
+pub(crate) fn dot<S: Isa>(a: &[Lanes<S>; 3], b: &[Lanes<S>; 3]) -> Lanes<S> {
+    a[2].mul_add(b[2], a[1].mul_add(b[1], a[0] * b[0]))
+}
+
+/// Three numbers from place `first`, each in all lanes.
+#[inline(always)]
+pub(crate) fn broadcast<S: Isa>(simd: S, numbers: &[f64], first: usize) -> [Lanes<S>; 3] {
+    [
+        Lanes::splat(simd, numbers[first]),
+        Lanes::splat(simd, numbers[first + 1]),
+        Lanes::splat(simd, numbers[first + 2]),
+    ]
+}

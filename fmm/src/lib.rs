@@ -1,8 +1,9 @@
 //! Fast summation of Stokeslets, stresslets, rotlets and sources.
 
-mod direct;
+pub mod direct;
 mod error;
 mod gemm;
+mod flow;
 mod gridding;
 mod kernel;
 mod near_field;
@@ -20,3 +21,5 @@ mod window;
 
 #[doc(inline)]
 pub use error::FmmError;
+#[doc(inline)]
+pub use flow::{Flow, Output, Strengths, Stresslets};

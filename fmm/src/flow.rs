@@ -1,0 +1,200 @@
+//! What is summed, and what comes out.
+
+use crate::FmmError;
+
+/// The strengths of the sources, one entry per source in each array. All fields are optional:
+/// `Strengths { stokeslets: Some(&forces), ..Default::default() }`. Viscosity is 1.
+///
+/// With $x$ from source to target and $r = |x|$ the flows are
+///
+/// * Stokeslet of force $f$: $u = (f/r + x (x \cdot f)/r^3)/8\pi$, $p = x \cdot f / 4\pi r^3$;
+/// * stresslet of density $q$ and normal $n$: $u = -3\,x (x \cdot q)(x \cdot n)/4\pi r^5$,
+///   $p = [q \cdot n/r^3 - 3 (x \cdot q)(x \cdot n)/r^5]/2\pi$;
+/// * rotlet of torque $t$: $u = t \times x/8\pi r^3$, $p = 0$;
+/// * source of flux $s$: $u = s\,x/4\pi r^3$, $p = 0$
+///
+/// (Pozrikidis, *Boundary Integral and Singularity Methods for Linearized Viscous Flow*, 1992, chapters 2 and 7).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Strengths<'a> {
+    /// Forces.
+    pub stokeslets: Option<&'a [[f64; 3]]>,
+    /// Densities and normals.
+    pub stresslets: Option<Stresslets<'a>>,
+    /// Torques.
+    pub rotlets: Option<&'a [[f64; 3]]>,
+    /// Fluxes.
+    pub fluxes: Option<&'a [f64]>,
+}
+
+/// The two vectors of each stresslet: of the double-layer potential, density times weight and unit normal.
+#[derive(Clone, Copy, Debug)]
+pub struct Stresslets<'a> {
+    /// $q$.
+    pub densities: &'a [[f64; 3]],
+    /// $n$, of any length.
+    pub normals: &'a [[f64; 3]],
+}
+
+/// How much of the flow is wanted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Output {
+    /// Velocity alone.
+    #[default]
+    Velocity,
+    /// Velocity and pressure.
+    Pressure,
+    /// Velocity, pressure and velocity gradient.
+    Gradient,
+}
+
+impl Output {
+    /// Numbers per target.
+    pub(crate) fn count(self) -> usize {
+        match self {
+            Self::Velocity => 3,
+            Self::Pressure => 4,
+            Self::Gradient => 13,
+        }
+    }
+}
+
+/// The flow at the targets. What was not asked for is empty.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Flow {
+    /// $u_i$.
+    pub velocity: Vec<[f64; 3]>,
+    /// $p$.
+    pub pressure: Vec<f64>,
+    /// `gradient[target][i][j]` is $\partial u_i/\partial x_j$.
+    pub gradient: Vec<[[f64; 3]; 3]>,
+}
+
+impl Flow {
+    /// $\sigma_{ij} = -p\,\delta_{ij} + \partial_j u_i + \partial_i u_j$ at each target; empty if the gradient
+    /// was not asked for.
+    pub fn stress(&self) -> Vec<[[f64; 3]; 3]> {
+        let points = self.gradient.iter().zip(&self.pressure);
+        points.map(|(gradient, &p)| stress(gradient, p)).collect()
+    }
+}
+
+fn stress(gradient: &[[f64; 3]; 3], pressure: f64) -> [[f64; 3]; 3] {
+    let mut stress = [[0.0; 3]; 3];
+    for i in 0..3 {
+        for j in 0..3 {
+            stress[i][j] = gradient[i][j] + gradient[j][i];
+        }
+        stress[i][i] -= pressure;
+    }
+    stress
+}
+
+/// Which kinds of singularity are present.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Singularities {
+    Stokeslets,
+    Stresslets,
+    Both,
+    All,
+}
+
+impl Singularities {
+    /// Numbers per source.
+    pub fn count(self) -> usize {
+        match self {
+            Self::Stokeslets => 3,
+            Self::Stresslets => 6,
+            Self::Both => 9,
+            Self::All => 13,
+        }
+    }
+}
+
+impl Strengths<'_> {
+    /// The smallest compiled set that has what is present.
+    pub(crate) fn singularities(&self) -> Singularities {
+        if self.rotlets.is_some() || self.fluxes.is_some() {
+            return Singularities::All;
+        }
+        match (self.stokeslets.is_some(), self.stresslets.is_some()) {
+            (true, true) => Singularities::Both,
+            (false, true) => Singularities::Stresslets,
+            _ => Singularities::Stokeslets,
+        }
+    }
+
+    /// Refuses arrays of other lengths than `count` and numbers that are not finite.
+    pub(crate) fn validate(&self, count: usize) -> Result<(), FmmError> {
+        if let Some(forces) = self.stokeslets {
+            check("Stokeslet strengths", forces, count)?;
+        }
+        if let Some(Stresslets { densities, normals }) = self.stresslets {
+            check("stresslet densities", densities, count)?;
+            check("stresslet normals", normals, count)?;
+        }
+        if let Some(torques) = self.rotlets {
+            check("rotlet strengths", torques, count)?;
+        }
+        if let Some(fluxes) = self.fluxes {
+            check("fluxes", fluxes.as_chunks::<1>().0, count)?;
+        }
+        Ok(())
+    }
+
+    /// The numbers of source `index` in the layout of `singularities`, zeros for what is absent.
+    pub(crate) fn of(&self, index: usize, singularities: Singularities) -> [f64; 13] {
+        let mut all = [0.0; 13];
+        if let Some(forces) = self.stokeslets {
+            all[..3].copy_from_slice(&forces[index]);
+        }
+        if let Some(Stresslets { densities, normals }) = self.stresslets {
+            all[3..6].copy_from_slice(&densities[index]);
+            all[6..9].copy_from_slice(&normals[index]);
+        }
+        if let Some(torques) = self.rotlets {
+            all[9..12].copy_from_slice(&torques[index]);
+        }
+        if let Some(fluxes) = self.fluxes {
+            all[12] = fluxes[index];
+        }
+        if singularities == Singularities::Stresslets {
+            all.copy_within(3..9, 0);
+        }
+        all
+    }
+}
+
+/// Refuses an array of another length than `expected`, and numbers that are not finite.
+pub(crate) fn check<const N: usize>(
+    what: &'static str,
+    entries: &[[f64; N]],
+    expected: usize,
+) -> Result<(), FmmError> {
+    if entries.len() != expected {
+        return Err(FmmError::Length {
+            what,
+            found: entries.len(),
+            expected,
+        });
+    }
+    for (index, entry) in entries.iter().enumerate() {
+        if let Some(&value) = entry.iter().find(|value| !value.is_finite()) {
+            return Err(FmmError::NotFinite { what, index, value });
+        }
+    }
+    Ok(())
+}
+
+/// Refuses positions that are not finite, or farther from the origin than their differences can be squared.
+/// Returns the largest coordinate.
+pub(crate) fn check_positions(what: &'static str, positions: &[[f64; 3]]) -> Result<f64, FmmError> {
+    check(what, positions, positions.len())?;
+    let farthest = positions
+        .as_flattened()
+        .iter()
+        .fold(0.0, |farthest: f64, x| farthest.max(x.abs()));
+    if farthest > 1e100 {
+        return Err(FmmError::TooFar(farthest));
+    }
+    Ok(farthest)
+}

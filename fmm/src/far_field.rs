@@ -78,12 +78,18 @@ impl FarField {
             grids.resize(level.boxes.len() * len, 0.0);
         }
         for depth in (0..tree.levels.len()).rev() {
+            let t = std::time::Instant::now();
             self.up::<K>(operators, tree, charges, grids, depth, len);
+            eprintln!("up {depth} {:?}", t.elapsed());
         }
         for depth in 0..tree.levels.len() {
+            let t = std::time::Instant::now();
             self.across::<K>(operators, tree, grids, depth, len);
+            eprintln!("across {depth} {:?}", t.elapsed());
+            let t = std::time::Instant::now();
             if depth > 0 {
                 self.down::<K>(operators, tree, grids, depth, len);
+            eprintln!("down {depth} {:?}", t.elapsed());
             }
         }
     }
@@ -152,6 +158,7 @@ impl FarField {
         if plan.sources.is_empty() || plan.targets.is_empty() {
             return;
         }
+        let tt = std::time::Instant::now();
         let Grids { levels, waves, translated } = grids;
         let fields = &mut levels[depth];
         let batch_len = K::POTENTIALS * transform.waves_len();
@@ -171,13 +178,17 @@ impl FarField {
             .map(|(grid, _)| grid)
             .collect();
         let batches = plan.targets.len().div_ceil(BATCH);
+        eprintln!("  forward {:?}", tt.elapsed());
         for potential in 0..K::POTENTIALS {
+            let tt = std::time::Instant::now();
             let field = |batch: usize| -> &[f64] {
                 &waves[batch * batch_len + potential * transform.waves_len()..][..transform.waves_len()]
             };
             if depth > 0 {
                 operators.turns.translate(&plan.sweeps, field, translated);
             }
+            eprintln!("  translate {:?}", tt.elapsed());
+            let tt = std::time::Instant::now();
             let translated = &*translated;
             boxes.par_chunks_mut(BATCH).enumerate().for_each_init(
                 || (transform.scratch(), vec![0.0; transform.waves_len()]),
@@ -193,6 +204,7 @@ impl FarField {
                     dispatch(Backward { transform, waves, grids: &mut grids, stride: shape.stride(), scratch });
                 },
             );
+            eprintln!("  backward {:?}", tt.elapsed());
         }
     }
 
@@ -342,3 +354,6 @@ impl WithIsa for Handing<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -2,13 +2,15 @@
 
 pub mod direct;
 mod error;
-mod gemm;
+mod far;
+mod far_field;
 mod flow;
+mod gemm;
 mod gridding;
 mod kernel;
 mod near_field;
+mod operators;
 mod parameters;
-mod plan;
 mod polynomial;
 mod prolate;
 mod splitting;

@@ -1,1 +1,10 @@
-//! Numbers of waves, grid points and digits for a tolerance.
+//! (temporary)
+
+/// Sizes of everything.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Parameters {
+    pub waves: usize,
+    pub width: usize,
+    pub points: usize,
+    pub accuracy: f64,
+}

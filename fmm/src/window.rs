@@ -106,7 +106,14 @@ impl Window {
         }
     }
 
-    /// The one-axis matrix that takes the grid of the lower child to its parent's: $g \times g$, row-major, parent by child.
+    /// How many points of the parent's grid a child reaches along each axis: those that its own points, in half of the parent,
+    /// would be spread over.
+    pub fn reach(&self) -> usize {
+        (self.points + self.width).div_ceil(2)
+    }
+
+    /// The one-axis matrix that takes the grid of the lower child to the lowest [`reach`](Self::reach) points of its parent's:
+    /// row-major, parent by child.
     ///
     /// The parent's grid is the one whose waves come closest, over $|k| \le K$ and in the sense of least squares, to
     /// $$ \sum_G R_{Gg}\,\frac{e^{-ikX_G}}{\hat\varphi(k)} = \frac{e^{-ikx_g}}{\hat\varphi(k/2)}, $$
@@ -118,8 +125,8 @@ impl Window {
         let waves: Vec<f64> = (0..SAMPLES)
             .map(|i| self.cutoff * (i as f64 + 0.5) / SAMPLES as f64)
             .collect();
-        let parent = self.phases(&waves, 1.0, 0.0);
-        let child = self.phases(&waves, 0.5, -0.25);
+        let parent = self.phases(&waves, 1.0, 0.0, self.reach());
+        let child = self.phases(&waves, 0.5, -0.25, self.points);
         let svd = parent.thin_svd().expect("finite numbers");
         let singular = svd.S().column_vector();
         let mut modes = svd.U().transpose() * child;
@@ -135,10 +142,10 @@ impl Window {
             .collect()
     }
 
-    /// $e^{-ikx}/\hat\varphi$ of the grid of a box of some side about some centre: cosines above, sines below.
-    fn phases(&self, waves: &[f64], side: f64, center: f64) -> Mat<f64> {
+    /// $e^{-ikx}/\hat\varphi$ of the lowest `points` of the grid of a box of some side about some centre: cosines above, sines below.
+    fn phases(&self, waves: &[f64], side: f64, center: f64, points: usize) -> Mat<f64> {
         let count = waves.len();
-        Mat::from_fn(2 * count, self.points, |row, i| {
+        Mat::from_fn(2 * count, points, |row, i| {
             let k = waves[row % count];
             let x = center + side * self.position(i);
             let wave = if row < count {
@@ -310,9 +317,11 @@ mod tests {
             for i in 0..=200 {
                 let x = i as f64 / 400.0 - 0.5;
                 let child = grid(&window, 2.0 * (x + 0.25), false);
+                let beyond = points - window.reach();
                 let parent: Vec<f64> = transfer
                     .chunks(points)
                     .map(|row| row.iter().zip(&child).map(|(r, g)| r * g).sum())
+                    .chain(std::iter::repeat_n(0.0, beyond))
                     .collect();
                 let mirrored: Vec<f64> = parent.iter().rev().copied().collect();
                 worst = worst.max(error(&window, &matrix, &k, &parent, x));

@@ -197,3 +197,6 @@ pub(crate) fn broadcast<S: Isa>(simd: S, numbers: &[f64], first: usize) -> [Lane
         Lanes::splat(simd, numbers[first + 2]),
     ]
 }
+
+#[cfg(test)]
+mod tests;

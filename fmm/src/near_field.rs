@@ -1,1 +1,491 @@
-//! (to be written)
+//! The near field: residual sums between the points of neighbouring leaves.
+//!
+//! The residual ends at its reach, but a leaf sees whole leaves around it, of whose pairs no more than
+//! $4\pi/81 = 16\%$ are in reach. So points are sorted into tiles of eight neighbours, and a tile of targets picks
+//! first the tiles of sources, then the single sources within reach of its bounding box. Only those are summed.
+
+use std::marker::PhantomData;
+use std::ops::Range;
+
+use f64_lanes::{Isa, Lanes, PADDING, Precision, WithIsa, dispatch};
+use rayon::prelude::*;
+
+use crate::kernel::{Chain, MOST, Pair, UNITS, dot};
+use crate::tree::{SortedPoints, Tree};
+
+/// Points per tile: one register of the widest instruction set.
+const TILE: usize = PADDING;
+/// Sources that share the load of a polynomial's coefficients.
+const TOGETHER: usize = 2;
+/// Sources listed before they are summed.
+const LIST: usize = 1024;
+/// Place in a tile that no point holds.
+const VACANT: u32 = u32::MAX;
+
+/// What the near field needs to know of the points, once for all strengths.
+pub(crate) struct NearField {
+    sources: Tiles,
+    targets: Option<Tiles>,
+    /// Leaf of each tile of targets.
+    leaf: Vec<u32>,
+    /// What each leaf sees.
+    near: Vec<Vec<NearTiles>>,
+    /// The lengths of residuals that occur.
+    reaches: Vec<f64>,
+    /// The mollified chain, in the units of the kernels: coefficients in $s = 2 (r/L)^2 - 1$, highest first.
+    chain: [Vec<f64>; 4],
+    precision: Precision,
+}
+
+/// Tiles of sources within a reach.
+struct NearTiles {
+    tiles: Range<usize>,
+    /// Index of the reach.
+    reach: usize,
+}
+
+/// Points, eight by eight.
+#[derive(Default)]
+struct Tiles {
+    /// Which point of the tree holds each place.
+    points: Vec<u32>,
+    /// Coordinates, place by place; infinite where vacant.
+    positions: [Vec<f64>; 3],
+    /// Bounding boxes, tile by tile.
+    low: [Vec<f64>; 3],
+    high: [Vec<f64>; 3],
+}
+
+impl Tiles {
+    /// Tiles of each range in turn, and the number of tiles before each range.
+    fn new(points: &SortedPoints, ranges: &[Range<u32>]) -> (Self, Vec<usize>) {
+        let groups: Vec<Vec<u32>> = ranges
+            .par_iter()
+            .map(|range| {
+                let mut group: Vec<u32> = range.clone().collect();
+                bisect(&mut group, &points.positions);
+                group
+            })
+            .collect();
+        let mut tiles = Self::default();
+        let mut starts = vec![0];
+        for tile in groups.iter().map(|group| group.chunks(TILE)) {
+            tile.for_each(|tile| tiles.push(tile, points));
+            starts.push(tiles.count());
+        }
+        (tiles, starts)
+    }
+
+    fn count(&self) -> usize {
+        self.low[0].len()
+    }
+
+    fn push(&mut self, tile: &[u32], points: &SortedPoints) {
+        let vacant = TILE - tile.len();
+        self.points.extend_from_slice(tile);
+        self.points.extend([VACANT; TILE].iter().take(vacant));
+        for axis in 0..3 {
+            let of = tile.iter().map(|&i| points.positions[axis][i as usize]);
+            self.low[axis].push(of.clone().fold(f64::INFINITY, f64::min));
+            self.high[axis].push(of.clone().fold(f64::NEG_INFINITY, f64::max));
+            self.positions[axis].extend(of);
+            self.positions[axis].extend([f64::INFINITY; TILE].iter().take(vacant));
+        }
+    }
+}
+
+/// Sorts points so that each eight in turn are neighbours: halves along the longest side of their bounding box.
+fn bisect(group: &mut [u32], positions: &[Vec<f64>; 3]) {
+    if group.len() <= TILE {
+        return;
+    }
+    let coordinate = |axis: usize, i: u32| positions[axis][i as usize];
+    let extent = |axis: usize| {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for &i in group.iter() {
+            let x = coordinate(axis, i);
+            (low, high) = (low.min(x), high.max(x));
+        }
+        high - low
+    };
+    let extents = [extent(0), extent(1), extent(2)];
+    let axis = (0..3).fold(0, |a, b| if extents[b] > extents[a] { b } else { a });
+    let half = (group.len() / 2).next_multiple_of(TILE);
+    group.select_nth_unstable_by(half, |&i, &j| {
+        coordinate(axis, i).total_cmp(&coordinate(axis, j))
+    });
+    let (low, high) = group.split_at_mut(half);
+    bisect(low, positions);
+    bisect(high, positions);
+}
+
+impl NearField {
+    /// `mollified[n - 1]` are the coefficients in $s = 2t - 1$, highest first, of $b_n(t)$,
+    /// $\beta_n = L^{1-2n} b_n((r/L)^2)$. Ranges of sources in the tree's near lists must be unions of leaves.
+    pub fn new(tree: &Tree, mollified: &[Vec<f64>; 4], precision: Precision) -> Self {
+        let mut by_place: Vec<&Range<u32>> = tree.leaves.iter().map(|leaf| &leaf.sources).collect();
+        by_place.retain(|range| !range.is_empty());
+        by_place.sort_unstable_by_key(|range| range.start);
+        let ranges: Vec<Range<u32>> = by_place.into_iter().cloned().collect();
+        let (sources, starts) = Tiles::new(&tree.sources, &ranges);
+        let first = |point: u32| starts[ranges.partition_point(|range| range.start < point)];
+
+        let targets: Vec<_> = tree
+            .leaves
+            .iter()
+            .map(|leaf| leaf.targets.clone())
+            .collect();
+        let (targets, leaf_of) = match &tree.targets {
+            Some(points) => {
+                let (tiles, starts) = Tiles::new(points, &targets);
+                let leaves = tree.leaves.len();
+                (Some(tiles), owners(&starts, 0..leaves))
+            }
+            None => {
+                let mut occupied: Vec<usize> = (0..tree.leaves.len()).collect();
+                occupied.retain(|&i| !tree.leaves[i].sources.is_empty());
+                occupied.sort_unstable_by_key(|&i| tree.leaves[i].sources.start);
+                (None, owners(&starts, occupied.into_iter()))
+            }
+        };
+
+        let mut reaches: Vec<f64> = tree
+            .leaves
+            .iter()
+            .flat_map(|leaf| leaf.near.iter().map(|near| near.reach))
+            .collect();
+        reaches.sort_unstable_by(f64::total_cmp);
+        reaches.dedup();
+        let near = tree.leaves.iter().map(|leaf| {
+            let near = leaf.near.iter().filter(|near| !near.sources.is_empty());
+            let mut near: Vec<_> = near
+                .map(|near| NearTiles {
+                    tiles: first(near.sources.start)..first(near.sources.end),
+                    reach: reaches.partition_point(|&reach| reach < near.reach),
+                })
+                .collect();
+            // One list of sources serves all tiles of one reach.
+            near.sort_by_key(|near| (near.reach, near.tiles.start));
+            near
+        });
+        Self {
+            near: near.collect(),
+            sources,
+            targets,
+            leaf: leaf_of,
+            reaches,
+            chain: [0, 1, 2, 3].map(|n| mollified[n].iter().map(|c| c / UNITS[n]).collect()),
+            precision,
+        }
+    }
+
+    fn targets(&self) -> &Tiles {
+        self.targets.as_ref().unwrap_or(&self.sources)
+    }
+
+    /// Adds the near field of `strengths` to `outputs`, both in the tree's order, one array per number.
+    pub fn add<P: Pair>(&self, strengths: &[Vec<f64>], outputs: &mut [Vec<f64>]) {
+        let records = self.records::<P>(strengths);
+        let polynomials = self.polynomials(P::ORDERS);
+        let tiles = self.targets().count();
+        let mut sums = vec![0.0; tiles * P::OUTPUTS * TILE];
+        sums.par_chunks_mut(P::OUTPUTS * TILE)
+            .enumerate()
+            .for_each(|(tile, sums)| {
+                dispatch(TileSum::<P> {
+                    field: self,
+                    records: &records,
+                    polynomials: &polynomials,
+                    tile,
+                    sums,
+                    pair: PhantomData,
+                });
+            });
+        let points = &self.targets().points;
+        outputs.par_iter_mut().enumerate().for_each(|(k, output)| {
+            for (points, sums) in points
+                .chunks_exact(TILE)
+                .zip(sums.chunks_exact(P::OUTPUTS * TILE))
+            {
+                for (&point, sum) in points.iter().zip(&sums[k * TILE..]) {
+                    if point != VACANT {
+                        output[point as usize] += sum;
+                    }
+                }
+            }
+        });
+    }
+
+    /// Position and weighed strengths of each place, place after place, and after the last one a source of no
+    /// strength.
+    fn records<P: Pair>(&self, strengths: &[Vec<f64>]) -> Vec<f64> {
+        let stride = 3 + P::STRENGTHS;
+        let places = self.sources.points.len();
+        let mut records = vec![0.0; stride * (places + 1)];
+        records
+            .par_chunks_exact_mut(stride)
+            .enumerate()
+            .with_min_len(1024)
+            .for_each(|(place, record)| {
+                if place == places {
+                    (0..3).for_each(|axis| {
+                        record[axis] = self.sources.low[axis].first().copied().unwrap_or(0.0)
+                    });
+                } else if self.sources.points[place] != VACANT {
+                    let point = self.sources.points[place] as usize;
+                    (0..3).for_each(|axis| record[axis] = self.sources.positions[axis][place]);
+                    for k in 0..P::STRENGTHS {
+                        record[3 + k] = strengths[k][point] * P::FACTORS[k];
+                    }
+                }
+            });
+        records
+    }
+
+    /// For each reach $L$ the coefficients of $L^{1-2n} b_n$ for the orders $n$ from first to last, side by side.
+    fn polynomials(&self, [first, last]: [usize; 2]) -> Vec<Vec<f64>> {
+        let orders = &self.chain[first - 1..last];
+        let terms = orders.iter().map(Vec::len).max().unwrap_or(0);
+        let interleaved = |reach: &f64| {
+            let mut coefficients = Vec::with_capacity(terms * orders.len());
+            for term in 0..terms {
+                for (n, order) in (first..).zip(orders) {
+                    let own = (term + order.len()).checked_sub(terms);
+                    let power = reach.powi(1 - 2 * n as i32);
+                    coefficients.push(own.map_or(0.0, |own| order[own] * power));
+                }
+            }
+            coefficients
+        };
+        self.reaches.iter().map(interleaved).collect()
+    }
+}
+
+/// For each tile its owner, `starts[i]..starts[i + 1]` being the tiles of the owner in place `i`.
+fn owners(starts: &[usize], owners: impl Iterator<Item = usize>) -> Vec<u32> {
+    let tiles = starts.windows(2).zip(owners);
+    tiles
+        .flat_map(|(tiles, owner)| std::iter::repeat_n(owner as u32, tiles[1] - tiles[0]))
+        .collect()
+}
+
+/// The bounding box of a tile of targets.
+struct Bounds {
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl Bounds {
+    /// Squares of the distances from the box of eight boxes `low` to `high`; of points where the two are the same.
+    #[inline(always)]
+    fn distances(&self, low: [&[f64]; 3], high: [&[f64]; 3], squares: &mut [f64; TILE]) {
+        *squares = [0.0; TILE];
+        for axis in 0..3 {
+            let (low, high) = (&low[axis][..TILE], &high[axis][..TILE]);
+            for i in 0..TILE {
+                let (below, above) = (self.low[axis] - high[i], low[i] - self.high[axis]);
+                let gap = if below > above { below } else { above };
+                let gap = if gap > 0.0 { gap } else { 0.0 };
+                squares[i] += gap * gap;
+            }
+        }
+    }
+}
+
+/// All that one tile of targets sees.
+struct TileSum<'a, P> {
+    field: &'a NearField,
+    records: &'a [f64],
+    polynomials: &'a [Vec<f64>],
+    tile: usize,
+    sums: &'a mut [f64],
+    pair: PhantomData<P>,
+}
+
+/// Sources picked for a tile of targets.
+struct List {
+    places: [u32; LIST + TILE],
+    count: usize,
+}
+
+impl<P: Pair> WithIsa for TileSum<'_, P> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_isa<S: Isa>(mut self, simd: S) {
+        let field = self.field;
+        let bounds = field.bounds(self.tile);
+        let mut list = List {
+            places: [0; LIST + TILE],
+            count: 0,
+        };
+        let near = &field.near[field.leaf[self.tile] as usize];
+        for (i, group) in near.iter().enumerate() {
+            let reach = field.reaches[group.reach];
+            let mut first = group.tiles.start;
+            while first < group.tiles.end {
+                let close = field.close_tiles(&bounds, first..group.tiles.end, reach);
+                for tile in first..group.tiles.end.min(first + TILE) {
+                    if close & 1 << (tile - first) != 0 {
+                        field.list_sources(&bounds, tile, reach, &mut list);
+                        if list.count > LIST - TILE {
+                            self.flush(simd, group.reach, &mut list);
+                        }
+                    }
+                }
+                first += TILE;
+            }
+            if near.get(i + 1).is_none_or(|next| next.reach != group.reach) {
+                self.flush(simd, group.reach, &mut list);
+            }
+        }
+    }
+}
+
+impl NearField {
+    fn bounds(&self, tile: usize) -> Bounds {
+        let targets = self.targets();
+        Bounds {
+            low: [0, 1, 2].map(|axis| targets.low[axis][tile]),
+            high: [0, 1, 2].map(|axis| targets.high[axis][tile]),
+        }
+    }
+
+    /// Of the first eight tiles, a bit for each that is within reach.
+    #[inline(always)]
+    fn close_tiles(&self, bounds: &Bounds, tiles: Range<usize>, reach: f64) -> u32 {
+        let count = tiles.len().min(TILE);
+        let mut boxes = [[[f64::INFINITY; TILE]; 3]; 2];
+        for axis in 0..3 {
+            let tiles = tiles.start..tiles.start + count;
+            boxes[0][axis][..count].copy_from_slice(&self.sources.low[axis][tiles.clone()]);
+            boxes[1][axis][..count].copy_from_slice(&self.sources.high[axis][tiles]);
+        }
+        let [low, high] = &boxes;
+        let mut squares = [0.0; TILE];
+        bounds.distances(
+            [&low[0], &low[1], &low[2]],
+            [&high[0], &high[1], &high[2]],
+            &mut squares,
+        );
+        let mut bits = 0;
+        for i in 0..TILE {
+            bits |= u32::from(squares[i] < reach * reach) << i;
+        }
+        bits
+    }
+
+    /// Lists those sources of a tile that are within reach.
+    #[inline(always)]
+    fn list_sources(&self, bounds: &Bounds, tile: usize, reach: f64, list: &mut List) {
+        let places = tile * TILE..(tile + 1) * TILE;
+        let positions = [
+            &self.sources.positions[0][places.clone()],
+            &self.sources.positions[1][places.clone()],
+            &self.sources.positions[2][places.clone()],
+        ];
+        let mut squares = [0.0; TILE];
+        bounds.distances(positions, positions, &mut squares);
+        let listed = &mut list.places[list.count..list.count + TILE];
+        let mut count = 0;
+        for i in 0..TILE {
+            listed[count & (TILE - 1)] = (places.start + i) as u32;
+            count += usize::from(squares[i] < reach * reach);
+        }
+        list.count += count;
+    }
+}
+
+impl<P: Pair> TileSum<'_, P> {
+    /// Sums the listed sources and clears the list.
+    #[inline(always)]
+    fn flush<S: Isa>(&mut self, simd: S, reach: usize, list: &mut List) {
+        let dummy = self.field.sources.points.len() as u32;
+        while !list.count.is_multiple_of(TOGETHER) {
+            list.places[list.count] = dummy;
+            list.count += 1;
+        }
+        let registers = TILE / Lanes::<S>::COUNT;
+        for register in 0..registers {
+            self.add_listed(simd, register, reach, &list.places[..list.count]);
+        }
+        list.count = 0;
+    }
+
+    #[inline(always)]
+    fn add_listed<S: Isa>(&mut self, simd: S, register: usize, reach: usize, places: &[u32]) {
+        let zero = Lanes::splat(simd, 0.0);
+        let registers = TILE / Lanes::<S>::COUNT;
+        let target = self.field.target(simd, self.tile, register);
+        let length = self.field.reaches[reach];
+        let coefficients = &self.polynomials[reach][..];
+        let reach2 = Lanes::splat(simd, length * length);
+        let slope = Lanes::splat(simd, 2.0 / (length * length));
+        let precision = self.field.precision;
+        let mut sums = [zero; MOST];
+        for places in places.as_chunks::<TOGETHER>().0 {
+            let mut records = [&self.records[..0]; TOGETHER];
+            let mut x = [[zero; 3]; TOGETHER];
+            let mut r2 = [zero; TOGETHER];
+            let mut s = [zero; TOGETHER];
+            for i in 0..TOGETHER {
+                let start = places[i] as usize * (3 + P::STRENGTHS);
+                records[i] = &self.records[start..start + 3 + P::STRENGTHS];
+                for axis in 0..3 {
+                    x[i][axis] = target[axis] - records[i][axis];
+                }
+                r2[i] = dot(&x[i], &x[i]);
+                s[i] = r2[i].mul_add(slope, Lanes::splat(simd, -1.0));
+            }
+            let mollified = evaluate::<S, P>(simd, coefficients, &s);
+            for i in 0..TOGETHER {
+                let chain = Chain::residual(r2[i], reach2, &mollified[i], precision);
+                P::add(&x[i], &chain, &records[i][3..], &mut sums);
+            }
+        }
+        for output in 0..P::OUTPUTS {
+            let index = output * registers + register;
+            (Lanes::load(simd, self.sums, index) + sums[output]).store(self.sums, index);
+        }
+    }
+}
+
+impl NearField {
+    /// The targets of a register; vacant places take the position of the first.
+    #[inline(always)]
+    fn target<S: Isa>(&self, simd: S, tile: usize, register: usize) -> [Lanes<S>; 3] {
+        let positions = &self.targets().positions;
+        let mut target = [Lanes::splat(simd, 0.0); 3];
+        let infinity = Lanes::splat(simd, f64::INFINITY);
+        for axis in 0..3 {
+            let first = Lanes::splat(simd, positions[axis][tile * TILE]);
+            let index = tile * (TILE / Lanes::<S>::COUNT) + register;
+            let x = Lanes::load(simd, &positions[axis], index);
+            target[axis] = x.select_less(infinity, x, first);
+        }
+        target
+    }
+}
+
+/// The polynomials of the orders that `P` needs, by Horner's scheme, at two places at once.
+#[inline(always)]
+fn evaluate<S: Isa, P: Pair>(
+    simd: S,
+    coefficients: &[f64],
+    s: &[Lanes<S>; TOGETHER],
+) -> [[Lanes<S>; 4]; TOGETHER] {
+    let [first, last] = P::ORDERS;
+    let mut values = [[Lanes::splat(simd, 0.0); 4]; TOGETHER];
+    for term in coefficients.chunks_exact(1 + last - first) {
+        for order in first..=last {
+            let coefficient = Lanes::splat(simd, term[order - first]);
+            for i in 0..TOGETHER {
+                values[i][order - 1] = values[i][order - 1].mul_add(s[i], coefficient);
+            }
+        }
+    }
+    values
+}
+
+#[cfg(test)]
+mod tests;

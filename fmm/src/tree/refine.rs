@@ -293,8 +293,10 @@ impl Cells {
                 Role::Leaf(index) => (&mut leaves, index),
                 Role::Absent => unreachable!("children of a gridded box are in the tree"),
             };
-            let first = if range.is_empty() { index } else { range.start };
-            *range = first..index + 1;
+            if *range == (0..0) {
+                range.start = index;
+            }
+            range.end = index + 1;
         }
         GriddedBox {
             center: root.center(level, cell.place),
@@ -323,7 +325,7 @@ impl Cell {
             octant: 0,
             place: [0; 3],
             sources: 0..keys.sources.len() as u32,
-            targets: 0..keys.targets.len() as u32,
+            targets: 0..keys.targets.unwrap_or(keys.sources).len() as u32,
             colleagues,
             children: 0..0,
             octants: 0,
@@ -336,7 +338,8 @@ impl Cell {
     /// Whether its points differ.
     fn spread(&self, keys: &Keys) -> bool {
         let sources = &keys.sources[self.sources.start as usize..self.sources.end as usize];
-        let targets = &keys.targets[self.targets.start as usize..self.targets.end as usize];
+        let targets = &keys.targets.unwrap_or(keys.sources)
+            [self.targets.start as usize..self.targets.end as usize];
         let mut ends = [
             sources.first(),
             sources.last(),
@@ -354,12 +357,14 @@ impl Cell {
         let mut sources = self.sources.start;
         let mut targets = self.targets.start;
         for which in 0..8 {
-            let end = |keys: &[u128], range: &Range<u32>, start: u32| {
-                let rest = &keys[start as usize..range.end as usize];
-                start + rest.partition_point(|&key| octant(key, level) <= which) as u32
+            let part = |keys: &[u128], start: u32, end: u32| {
+                let rest = &keys[start as usize..end as usize];
+                start..start + rest.partition_point(|&key| octant(key, level) <= which) as u32
             };
-            let child_sources = sources..end(keys.sources, &self.sources, sources);
-            let child_targets = targets..end(keys.targets, &self.targets, targets);
+            let child_sources = part(keys.sources, sources, self.sources.end);
+            let child_targets = keys.targets.map_or(child_sources.clone(), |keys| {
+                part(keys, targets, self.targets.end)
+            });
             (sources, targets) = (child_sources.end, child_targets.end);
             if !child_sources.is_empty() || !child_targets.is_empty() {
                 children.push(Cell {

@@ -11,7 +11,8 @@ pub(super) const DEPTH: usize = 42;
 /// Morton keys of sources and targets, ascending: three bits for each level, the coarsest the highest.
 pub(super) struct Keys<'a> {
     pub sources: &'a [u128],
-    pub targets: &'a [u128],
+    /// `None` if the targets are the sources.
+    pub targets: Option<&'a [u128]>,
 }
 
 /// Points in Morton order, equal keys in the user's order, and their keys.

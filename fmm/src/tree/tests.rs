@@ -362,7 +362,7 @@ fn figures() {
                 let (sorted, keys) = sorting::sorted(points, &root);
                 let keys = Keys {
                     sources: &keys,
-                    targets: &keys,
+                    targets: None,
                 };
                 let cells = Cells::uniform(&keys, depth);
                 if cells.levels.last().unwrap().len() > 60_000 {
@@ -379,5 +379,77 @@ fn figures() {
                 describe(&format!("uniform {depth}"), &tree);
             }
         }
+    }
+}
+
+#[test]
+#[ignore = "scan"]
+fn scan() {
+    let rng = &mut fastrand::Rng::with_seed(3);
+    let cases: Vec<(&str, Vec<[f64; 3]>)> = vec![
+        ("cube 1e5", cloud(0, 100_000, rng)),
+        ("cube 3e5", cloud(0, 300_000, rng)),
+        ("spheroids 1e5", spheroids(102_000, rng)),
+        ("spheroids 3e5", spheroids(306_000, rng)),
+        ("sphere 1e5", cloud(1, 100_000, rng)),
+        ("sphere 3e5", cloud(1, 300_000, rng)),
+        ("line 1e5", cloud(2, 100_000, rng)),
+        ("clusters 1e5", cloud(4, 100_000, rng)),
+        ("graded 1e5", cloud(8, 100_000, rng)),
+        ("cube 1e4", cloud(0, 10_000, rng)),
+        ("cube 1e6", cloud(0, 1_000_000, rng)),
+        ("cube 4e5", cloud(0, 400_000, rng)),
+        ("spheroids 1e6", spheroids(1_020_000, rng)),
+        ("spheroids 1e4", spheroids(10_200, rng)),
+    ];
+    for (name, points) in &cases {
+        println!(
+            "{name}: chosen {:.4}",
+            Tree::new(points, None, &COSTS).cost(&COSTS) * 1e-9
+        );
+        for root in Root::candidates(points, None) {
+            for bias in [1.0] {
+                let costs = Costs {
+                    grid: COSTS.grid * bias,
+                    ..COSTS
+                };
+                let tree = Tree::inside(&root, points, None, &costs);
+                print!(" {:.4}", tree.cost(&COSTS) * 1e-9);
+            }
+        }
+        println!();
+        let start = Instant::now();
+        let roots = Root::candidates(points, None);
+        println!("  roots {:.4}", start.elapsed().as_secs_f64());
+        let start = Instant::now();
+        let (sources, keys) = sorting::sorted(points, &roots[0]);
+        println!("  sorted {:.4}", start.elapsed().as_secs_f64());
+        let start = Instant::now();
+        let keys = Keys {
+            sources: &keys,
+            targets: None,
+        };
+        let cells = Cells::new(&keys, roots[0].finest, &COSTS);
+        println!(
+            "  cells {:.4} {}",
+            start.elapsed().as_secs_f64(),
+            cells.levels.iter().map(Vec::len).sum::<usize>()
+        );
+        let start = Instant::now();
+        let (levels, leaves) = cells.boxes_and_leaves(&roots[0]);
+        let mut tree = Tree {
+            sources,
+            targets: None,
+            levels,
+            leaves,
+        };
+        near::fill(&mut tree, &cells);
+        println!("  near {:.4}", start.elapsed().as_secs_f64());
+        let start = Instant::now();
+        tree.pairs();
+        println!("  pairs {:.4}", start.elapsed().as_secs_f64());
+        let start = Instant::now();
+        std::hint::black_box(Tree::new(points, None, &COSTS));
+        println!("  new {:.4}", start.elapsed().as_secs_f64());
     }
 }

@@ -21,10 +21,12 @@ impl Root {
     pub fn candidates(sources: &[[f64; 3]], targets: Option<&[[f64; 3]]>) -> Vec<Root> {
         let mut low = [f64::INFINITY; 3];
         let mut high = [f64::NEG_INFINITY; 3];
-        for point in sources.iter().chain(targets.unwrap_or_default()) {
-            for axis in 0..3 {
-                low[axis] = low[axis].min(point[axis]);
-                high[axis] = high[axis].max(point[axis]);
+        for points in [sources, targets.unwrap_or_default()] {
+            for point in points {
+                for axis in 0..3 {
+                    low[axis] = low[axis].min(point[axis]);
+                    high[axis] = high[axis].max(point[axis]);
+                }
             }
         }
         if low[0] > high[0] {

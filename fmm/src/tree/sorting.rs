@@ -25,12 +25,9 @@ pub(super) fn sorted(points: &[[f64; 3]], root: &Root) -> (SortedPoints, Vec<u12
         .collect();
     keyed.par_sort_unstable();
     let order: Vec<u32> = keyed.par_iter().map(|one| one.1).collect();
-    let positions = std::array::from_fn(|axis| {
-        order
-            .par_iter()
-            .map(|&i| points[i as usize][axis])
-            .collect()
-    });
+    let gathered: Vec<[f64; 3]> = order.par_iter().map(|&i| points[i as usize]).collect();
+    let positions =
+        std::array::from_fn(|axis| gathered.par_iter().map(|point| point[axis]).collect());
     (
         SortedPoints { order, positions },
         keyed.par_iter().map(|one| one.0).collect(),

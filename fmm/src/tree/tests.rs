@@ -453,3 +453,15 @@ fn scan() {
         println!("  new {:.4}", start.elapsed().as_secs_f64());
     }
 }
+
+#[test]
+#[ignore = "prof"]
+fn prof() {
+    let rng = &mut fastrand::Rng::with_seed(3);
+    let points = cloud(0, 1_000_000, rng);
+    for _ in 0..15 {
+        let start = Instant::now();
+        std::hint::black_box(Tree::new(&points, None, &COSTS));
+        println!("  new {:.4}", start.elapsed().as_secs_f64());
+    }
+}

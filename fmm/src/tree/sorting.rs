@@ -54,12 +54,11 @@ pub(super) fn thinned(points: &[[f64; 3]], stride: usize) -> Vec<[f64; 3]> {
 }
 
 fn key(point: [f64; 3], root: &Root, scale: f64) -> u128 {
-    let mut key = 0;
-    for axis in 0..3 {
+    let along = |axis: usize| {
         let place = ((point[axis] - root.corner[axis]) * scale) as u64;
-        key |= spread(place.min((1 << DEPTH) - 1)) << axis;
-    }
-    key
+        spread(place.min((1 << DEPTH) - 1)) << axis
+    };
+    along(0) | along(1) | along(2)
 }
 
 /// Moves bit i to bit 3 i, for 42 bits.

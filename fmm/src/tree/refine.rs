@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use rayon::prelude::*;
+
 use super::root::Root;
 use super::sorting::{DEPTH, Keys, octant};
 use super::{COLLEAGUES, Costs, GriddedBox, Leaf, Level, NONE};
@@ -94,27 +96,30 @@ impl Cells {
     /// Splits those of the finest cells that might carry a grid; whether there were any.
     fn grow(&mut self, keys: &Keys, costs: &Costs) -> bool {
         let level = self.levels.len() - 1;
-        let parents = &self.levels[level];
-        let mut children = Vec::new();
-        let mut families = Vec::with_capacity(parents.len());
-        for (i, parent) in parents.iter().enumerate() {
-            let first = children.len() as u32;
-            let promising = level == 0
-                || (parent.spread(keys)
-                    && self.links(level, i, |_| true) * costs.pair > costs.grid);
-            if promising {
-                parent.split(i as u32, level, keys, &mut children);
-            }
-            families.push(first..children.len() as u32);
-        }
-        for (parent, family) in self.levels[level].iter_mut().zip(families) {
-            parent.octants = children[family.start as usize..family.end as usize]
+        let families: Vec<Vec<Cell>> = self.levels[level]
+            .par_iter()
+            .enumerate()
+            .map(|(i, parent)| {
+                // No grid saves more than all pairs.
+                let links = || self.links(level, i, |_| true);
+                if level == 0 || (parent.spread(keys) && links() * costs.pair > costs.grid) {
+                    parent.split(i as u32, level, keys)
+                } else {
+                    Vec::new()
+                }
+            })
+            .collect();
+        let mut first = 0;
+        for (parent, family) in self.levels[level].iter_mut().zip(&families) {
+            parent.octants = family
                 .iter()
-                .fold(0, |octants, child: &Cell| octants | 1 << child.octant);
-            parent.children = family;
+                .fold(0, |octants, child| octants | 1 << child.octant);
+            parent.children = first..first + family.len() as u32;
+            first = parent.children.end;
         }
+        let mut children: Vec<Cell> = families.into_iter().flatten().collect();
         let parents = &self.levels[level];
-        for child in &mut children {
+        children.par_iter_mut().for_each(|child| {
             let around = &parents[child.parent as usize].colleagues;
             for slot in 0..COLLEAGUES {
                 let (parent_slot, octant) = beyond(child.octant, slot);
@@ -122,7 +127,7 @@ impl Cells {
                     child.colleagues[slot] = parent.child(octant);
                 }
             }
-        }
+        });
         let grown = !children.is_empty();
         if grown {
             self.levels.push(children);
@@ -293,8 +298,10 @@ impl Cells {
                 Role::Leaf(index) => (&mut leaves, index),
                 Role::Absent => unreachable!("children of a gridded box are in the tree"),
             };
-            let first = if range.is_empty() { index } else { range.start };
-            *range = first..index + 1;
+            if *range == (0..0) {
+                range.start = index;
+            }
+            range.end = index + 1;
         }
         GriddedBox {
             center: root.center(level, cell.place),
@@ -323,7 +330,7 @@ impl Cell {
             octant: 0,
             place: [0; 3],
             sources: 0..keys.sources.len() as u32,
-            targets: 0..keys.targets.len() as u32,
+            targets: 0..keys.targets.unwrap_or(keys.sources).len() as u32,
             colleagues,
             children: 0..0,
             octants: 0,
@@ -336,7 +343,8 @@ impl Cell {
     /// Whether its points differ.
     fn spread(&self, keys: &Keys) -> bool {
         let sources = &keys.sources[self.sources.start as usize..self.sources.end as usize];
-        let targets = &keys.targets[self.targets.start as usize..self.targets.end as usize];
+        let targets = &keys.targets.unwrap_or(keys.sources)
+            [self.targets.start as usize..self.targets.end as usize];
         let mut ends = [
             sources.first(),
             sources.last(),
@@ -349,17 +357,20 @@ impl Cell {
         ends.any(|end| Some(end) != first)
     }
 
-    /// Appends its children with points, in the order of octants.
-    fn split(&self, index: u32, level: usize, keys: &Keys, children: &mut Vec<Cell>) {
+    /// Its children with points, in the order of octants.
+    fn split(&self, index: u32, level: usize, keys: &Keys) -> Vec<Cell> {
+        let mut children = Vec::with_capacity(8);
         let mut sources = self.sources.start;
         let mut targets = self.targets.start;
         for which in 0..8 {
-            let end = |keys: &[u128], range: &Range<u32>, start: u32| {
-                let rest = &keys[start as usize..range.end as usize];
-                start + rest.partition_point(|&key| octant(key, level) <= which) as u32
+            let part = |keys: &[u128], start: u32, end: u32| {
+                let rest = &keys[start as usize..end as usize];
+                start..start + rest.partition_point(|&key| octant(key, level) <= which) as u32
             };
-            let child_sources = sources..end(keys.sources, &self.sources, sources);
-            let child_targets = targets..end(keys.targets, &self.targets, targets);
+            let child_sources = part(keys.sources, sources, self.sources.end);
+            let child_targets = keys.targets.map_or(child_sources.clone(), |keys| {
+                part(keys, targets, self.targets.end)
+            });
             (sources, targets) = (child_sources.end, child_targets.end);
             if !child_sources.is_empty() || !child_targets.is_empty() {
                 children.push(Cell {
@@ -379,6 +390,7 @@ impl Cell {
                 });
             }
         }
+        children
     }
 
     /// The child in an octant, or [`NONE`].

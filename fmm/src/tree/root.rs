@@ -1,7 +1,7 @@
 //! The cube around all points.
 
-/// Sides tried: the points' extent takes 8, 7, 6 or 5 eighths of the root's.
-const EIGHTHS: [f64; 4] = [8.0, 7.0, 6.0, 5.0];
+/// Sides tried: the extent of the points takes so many sixteenths of the root's.
+const SIXTEENTHS: [f64; 8] = [16.0, 15.0, 14.0, 13.0, 12.0, 11.0, 10.0, 9.0];
 /// Significant bits of the root's side: few, so that there are many levels with exact centres.
 const SIDE_BITS: i32 = 12;
 
@@ -21,10 +21,12 @@ impl Root {
     pub fn candidates(sources: &[[f64; 3]], targets: Option<&[[f64; 3]]>) -> Vec<Root> {
         let mut low = [f64::INFINITY; 3];
         let mut high = [f64::NEG_INFINITY; 3];
-        for point in sources.iter().chain(targets.unwrap_or_default()) {
-            for axis in 0..3 {
-                low[axis] = low[axis].min(point[axis]);
-                high[axis] = high[axis].max(point[axis]);
+        for points in [sources, targets.unwrap_or_default()] {
+            for point in points {
+                for axis in 0..3 {
+                    low[axis] = low[axis].min(point[axis]);
+                    high[axis] = high[axis].max(point[axis]);
+                }
             }
         }
         if low[0] > high[0] {
@@ -39,9 +41,9 @@ impl Root {
             let side = if largest > 0.0 { largest } else { 1.0 };
             return vec![Root::around(low, largest, side)];
         }
-        EIGHTHS
+        SIXTEENTHS
             .iter()
-            .map(|eighths| Root::around(low, largest, extent * 8.0 / eighths))
+            .map(|part| Root::around(low, largest, extent * 16.0 / part))
             .collect()
     }
 

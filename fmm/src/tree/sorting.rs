@@ -11,7 +11,8 @@ pub(super) const DEPTH: usize = 42;
 /// Morton keys of sources and targets, ascending: three bits for each level, the coarsest the highest.
 pub(super) struct Keys<'a> {
     pub sources: &'a [u128],
-    pub targets: &'a [u128],
+    /// `None` if the targets are the sources.
+    pub targets: Option<&'a [u128]>,
 }
 
 /// Points in Morton order, equal keys in the user's order, and their keys.
@@ -24,12 +25,9 @@ pub(super) fn sorted(points: &[[f64; 3]], root: &Root) -> (SortedPoints, Vec<u12
         .collect();
     keyed.par_sort_unstable();
     let order: Vec<u32> = keyed.par_iter().map(|one| one.1).collect();
-    let positions = std::array::from_fn(|axis| {
-        order
-            .par_iter()
-            .map(|&i| points[i as usize][axis])
-            .collect()
-    });
+    let gathered: Vec<[f64; 3]> = order.par_iter().map(|&i| points[i as usize]).collect();
+    let positions =
+        std::array::from_fn(|axis| gathered.par_iter().map(|point| point[axis]).collect());
     (
         SortedPoints { order, positions },
         keyed.par_iter().map(|one| one.0).collect(),
@@ -56,12 +54,11 @@ pub(super) fn thinned(points: &[[f64; 3]], stride: usize) -> Vec<[f64; 3]> {
 }
 
 fn key(point: [f64; 3], root: &Root, scale: f64) -> u128 {
-    let mut key = 0;
-    for axis in 0..3 {
+    let along = |axis: usize| {
         let place = ((point[axis] - root.corner[axis]) * scale) as u64;
-        key |= spread(place.min((1 << DEPTH) - 1)) << axis;
-    }
-    key
+        spread(place.min((1 << DEPTH) - 1)) << axis
+    };
+    along(0) | along(1) | along(2)
 }
 
 /// Moves bit i to bit 3 i, for 42 bits.

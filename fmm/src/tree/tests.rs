@@ -170,6 +170,7 @@ fn check_pairs(tree: &Tree) {
     let target_boxes: Vec<_> = (0..targets)
         .map(|i| boxes_of(tree, i, |one| &one.targets))
         .collect();
+    let mut pairs = 0.0;
     for i in 0..targets {
         let leaf = &tree.leaves[target_leaves[i]];
         for j in 0..sources {
@@ -180,6 +181,7 @@ fn check_pairs(tree: &Tree) {
                 })
                 .sum();
             let length = leaf.side.max(tree.leaves[source_leaves[j]].side);
+            pairs += f64::from(u8::from(r2 < length * length));
             let found: Vec<_> = leaf
                 .near
                 .iter()
@@ -209,6 +211,7 @@ fn check_pairs(tree: &Tree) {
             }
         }
     }
+    assert_eq!(tree.pairs(), pairs);
 }
 
 proptest! {
@@ -289,6 +292,57 @@ fn spheroids(n: usize, rng: &mut fastrand::Rng) -> Vec<[f64; 3]> {
     points
 }
 
+/// The tree with all boxes of `depth` levels gridded.
+fn uniform(points: &[[f64; 3]], root: &Root, depth: usize) -> Tree {
+    let (sources, keys) = sorting::sorted(points, root);
+    let keys = Keys {
+        sources: &keys,
+        targets: None,
+    };
+    let cells = Cells::uniform(&keys, depth);
+    let (levels, leaves) = cells.boxes_and_leaves(root);
+    let mut tree = Tree {
+        sources,
+        targets: None,
+        levels,
+        leaves,
+    };
+    near::fill(&mut tree, &cells);
+    tree
+}
+
+#[test]
+fn refinement_pays() {
+    let rng = &mut fastrand::Rng::with_seed(4);
+    for n in [2_000, 10_000, 40_000] {
+        for points in [
+            cloud(0, n, rng),
+            cloud(1, n, rng),
+            cloud(2, n, rng),
+            spheroids(n.max(2550), rng),
+        ] {
+            let cost = Tree::new(&points, None, &COSTS).cost(&COSTS);
+            for root in Root::candidates(&points, None) {
+                for depth in 1..5 {
+                    assert!(cost < 1.1 * uniform(&points, &root, depth).cost(&COSTS));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn distant_clusters_are_reached_and_coincident_points_are_not_split() {
+    let rng = &mut fastrand::Rng::with_seed(5);
+    let clusters = Tree::new(&cloud(4, 20_000, rng), None, &COSTS);
+    assert!(clusters.pairs() < 2000.0 * 20_000.0);
+    assert_eq!(
+        Tree::new(&cloud(5, 20_000, rng), None, &COSTS).levels.len(),
+        1
+    );
+    assert!(Tree::new(&cloud(6, 20_000, rng), None, &COSTS).levels.len() <= 3);
+}
+
 /// Figures of trees and of uniform ones; run with `--ignored --nocapture`, in release.
 #[test]
 #[ignore = "prints figures"]
@@ -358,24 +412,8 @@ fn figures() {
         }
         if !name.starts_with("clusters") {
             let root = Root::candidates(points, None)[0];
-            for depth in 1..7 {
-                let (sorted, keys) = sorting::sorted(points, &root);
-                let keys = Keys {
-                    sources: &keys,
-                    targets: &keys,
-                };
-                let cells = Cells::uniform(&keys, depth);
-                if cells.levels.last().unwrap().len() > 60_000 {
-                    break;
-                }
-                let (levels, leaves) = cells.boxes_and_leaves(&root);
-                let mut tree = Tree {
-                    sources: sorted,
-                    targets: None,
-                    levels,
-                    leaves,
-                };
-                near::fill(&mut tree, &cells);
+            for depth in 1..6 {
+                let tree = uniform(points, &root, depth);
                 describe(&format!("uniform {depth}"), &tree);
             }
         }

@@ -1,17 +1,19 @@
 //! The smooth part of the sums: charges to grids, up the tree, across by plane waves, down again, to the targets.
 
 use std::marker::PhantomData;
+use std::ops::Range;
 
 use f64_lanes::{Isa, WithIsa, dispatch};
 use rayon::prelude::*;
 
 use crate::far::{FIELDS, Far};
 use crate::gemm::Into;
+use crate::gridding::{self, Cube};
 use crate::operators::Operators;
 use crate::transfer::GridShape;
 use crate::transform::{BATCH, Transform};
 use crate::translate::Sweeps;
-use crate::tree::{GriddedBox, Tree};
+use crate::tree::{GriddedBox, SortedPoints, Tree};
 
 /// Charges of the sources, in the order of the tree: for each density its charge and, behind all charges, for
 /// each density its dipole along x, y and z.
@@ -119,7 +121,8 @@ impl FarField {
                 for leaf in &tree.leaves[gridded.leaves.start as usize..gridded.leaves.end as usize] {
                     let range = leaf.sources.start as usize..leaf.sources.end as usize;
                     if !range.is_empty() {
-                        operators.spread::<K>(gridded, level.side, &tree.sources, charges, range, grid);
+                        let cube = Cube { center: gridded.center, side: level.side };
+                        spread::<K>(operators, cube, &tree.sources, charges, range, grid);
                     }
                 }
                 let Some(finer) = finer else { return };
@@ -239,24 +242,97 @@ impl FarField {
         );
     }
 
-    /// The potentials at the targets of one leaf: fields and, if the kernel wants them, behind all fields the
-    /// derivatives of each, every one of them over the leaf's targets.
-    pub fn read<K: Far>(
-        &self,
-        operators: &Operators,
-        tree: &Tree,
-        grids: &Grids,
-        leaf: usize,
-        out: &mut [f64],
-    ) {
-        let [depth, number] = self.homes[leaf].map(|at| at as usize);
-        let level = &tree.levels[depth];
+    /// Adds the potentials and, behind them, the derivatives of as many of them as there are outputs left, to
+    /// `outputs`: columns over the targets in the tree's order.
+    pub fn read<K: Far>(&self, operators: &Operators, tree: &Tree, grids: &Grids, outputs: &mut [Vec<f64>]) {
+        let points = tree.target_points();
+        let mut parts = self.parts(tree, outputs);
         let len = operators.shape.len(K::DENSITIES.max(K::POTENTIALS));
-        let grid = &grids.levels[depth][number * len..][..len];
-        let targets = tree.leaves[leaf].targets.clone();
-        let range = targets.start as usize..targets.end as usize;
-        let points = tree.targets.as_ref().unwrap_or(&tree.sources);
-        operators.interpolate::<K>(&level.boxes[number], level.side, points, range, grid, out);
+        let numbers = K::POTENTIALS * if K::GRADIENTS { 4 } else { 1 };
+        parts.par_iter_mut().for_each_init(Vec::new, |values, (leaf, columns)| {
+            let [depth, number] = self.homes[*leaf as usize].map(|at| at as usize);
+            let level = &tree.levels[depth];
+            let targets = tree.leaves[*leaf as usize].targets.clone();
+            let range = targets.start as usize..targets.end as usize;
+            let grid = &grids.levels[depth][number * len..][..K::POTENTIALS * operators.shape.field()];
+            values.clear();
+            values.resize(range.len() * numbers, 0.0);
+            let cube = Cube { center: level.boxes[number].center, side: level.side };
+            let positions = points.positions.each_ref().map(|x| &x[range.clone()]);
+            interpolate::<K>(operators, cube, positions, grid, values);
+            for (column, out) in columns.iter_mut().enumerate() {
+                for (out, values) in out.iter_mut().zip(values.chunks_exact(numbers)) {
+                    *out += values[column];
+                }
+            }
+        });
+    }
+
+    /// The outputs cut into the leaves with targets.
+    fn parts<'a>(&self, tree: &Tree, outputs: &'a mut [Vec<f64>]) -> Vec<(u32, Vec<&'a mut [f64]>)> {
+        let mut leaves: Vec<u32> = (0..tree.leaves.len() as u32).collect();
+        leaves.retain(|&leaf| !tree.leaves[leaf as usize].targets.is_empty());
+        leaves.sort_unstable_by_key(|&leaf| tree.leaves[leaf as usize].targets.start);
+        let mut rest: Vec<&mut [f64]> = outputs.iter_mut().map(|column| &mut column[..]).collect();
+        let cut = leaves.into_iter().map(|leaf| {
+            let count = tree.leaves[leaf as usize].targets.len();
+            let own = rest.iter_mut().map(|column| {
+                let (own, others) = std::mem::take(column).split_at_mut(count);
+                *column = others;
+                own
+            });
+            (leaf, own.collect())
+        });
+        cut.collect()
+    }
+}
+
+/// Lays the charges of the points in `range` on the grid of their box.
+fn spread<K: Far>(
+    operators: &Operators,
+    cube: Cube,
+    points: &SortedPoints,
+    charges: &Charges,
+    range: Range<usize>,
+    grid: &mut [f64],
+) {
+    let window = &operators.window;
+    let grid = &mut grid[..K::DENSITIES * operators.shape.field()];
+    let positions = points.positions.each_ref().map(|x| &x[range.clone()]);
+    let charge = |density: usize| &charges[density][range.clone()];
+    let dipole = |density: usize| {
+        [0, 1, 2].map(|axis| &charges[K::DENSITIES + 3 * density + axis][range.clone()])
+    };
+    let none: [&[f64]; 3] = [&[]; 3];
+    match (K::DENSITIES, K::DIPOLES) {
+        (1, false) => gridding::spread::<1, false>(window, cube, positions, [charge(0)], [none], grid),
+        (3, false) => {
+            gridding::spread::<3, false>(window, cube, positions, [0, 1, 2].map(charge), [none; 3], grid);
+        }
+        (4, true) => {
+            let fields = [0, 1, 2, 3];
+            gridding::spread::<4, true>(window, cube, positions, fields.map(charge), fields.map(dipole), grid);
+        }
+        other => unreachable!("no kernel has {other:?}"),
+    }
+}
+
+/// Potentials of a box's grid at points in it.
+fn interpolate<K: Far>(
+    operators: &Operators,
+    cube: Cube,
+    positions: [&[f64]; 3],
+    grid: &[f64],
+    values: &mut [f64],
+) {
+    let window = &operators.window;
+    match (K::POTENTIALS, K::GRADIENTS) {
+        (1, false) => gridding::interpolate::<1, false>(window, cube, positions, grid, values),
+        (1, true) => gridding::interpolate::<1, true>(window, cube, positions, grid, values),
+        (3, false) => gridding::interpolate::<3, false>(window, cube, positions, grid, values),
+        (4, false) => gridding::interpolate::<4, false>(window, cube, positions, grid, values),
+        (4, true) => gridding::interpolate::<4, true>(window, cube, positions, grid, values),
+        other => unreachable!("no kernel has {other:?}"),
     }
 }
 

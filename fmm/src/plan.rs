@@ -1,11 +1,10 @@
-//! Fast sums: a plan for the points, then any number of applications.
+//! Fast sums of one kernel: a plan for the points, then any number of applications.
 
+use std::marker::PhantomData;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::prelude::*;
 
-use crate::direct;
-use crate::error::FmmError;
 use crate::far::Far;
 use crate::far_field::{Charges, FarField, Grids};
 use crate::kernel::MOST;
@@ -13,41 +12,97 @@ use crate::near_field::NearField;
 use crate::operators::Operators;
 use crate::tree::{SortedPoints, Tree};
 
-/// Fast sums of one kernel over one set of points.
-pub(crate) struct Fast<K> {
+/// Strengths of a source by its number in the user's order, in the layout of the kernel.
+pub(crate) type Strength<'a> = &'a (dyn Fn(usize) -> [f64; MOST] + Sync);
+
+/// Sums over points that are planned for.
+pub(crate) trait Planned: Send + Sync {
+    /// The kernel's numbers, one column each, over the targets in the user's order.
+    fn apply(&self, strength: Strength<'_>) -> Vec<Vec<f64>>;
+}
+
+/// Fast sums of the kernel `K` over one set of points.
+pub(crate) struct Plan<K> {
     operators: Arc<Operators>,
     tree: Tree,
     near: NearField,
     far: FarField,
-    /// Grids of earlier applications, to be used again: large memory costs more to clear than to fill.
+    /// Grids of earlier applications, used again: fresh memory costs more to get than grids to fill.
     grids: Mutex<Vec<Grids>>,
-    kernel: std::marker::PhantomData<K>,
+    kernel: PhantomData<fn() -> K>,
 }
 
-impl<K: Far> Fast<K> {
-    pub fn new(operators: Arc<Operators>, sources: &[[f64; 3]], targets: Option<&[[f64; 3]]>) -> Self {
-        let tree = Tree::new(sources, targets, &operators.costs::<K>());
-        let near = NearField::new(&tree);
+impl<K: Far> Plan<K> {
+    pub fn new(operators: Arc<Operators>, tree: Tree) -> Self {
+        let near = NearField::new(&tree, &operators.mollified, operators.parameters.precision);
         let far = FarField::new(&tree);
-        Self { operators, tree, near, far, grids: Mutex::default(), kernel: std::marker::PhantomData }
+        Self { operators, tree, near, far, grids: Mutex::default(), kernel: PhantomData }
     }
 
-    /// Sums of sources of these strengths, `K::OUTPUTS` numbers for each target, in the user's order.
-    pub fn apply(&self, strength: impl Fn(usize) -> [f64; MOST] + Sync) -> Vec<f64> {
-        let sources = &self.tree.sources;
-        let strengths: Vec<Vec<f64>> = columns(sources, K::STRENGTHS, |index| strength(index));
+    fn targets(&self) -> &SortedPoints {
+        self.tree.targets.as_ref().unwrap_or(&self.tree.sources)
+    }
+
+    /// Charges and dipoles of all sources.
+    fn charges(&self, strengths: &[Vec<f64>]) -> Charges {
+        let count = self.tree.sources.order.len();
+        let columns = if K::DIPOLES { 4 } else { 1 } * K::DENSITIES;
+        let mut charges = vec![vec![0.0; count]; columns];
+        const BLOCK: usize = 4096;
+        let mut blocks: Vec<Vec<&mut [f64]>> = (0..count.div_ceil(BLOCK)).map(|_| Vec::new()).collect();
+        for column in &mut charges {
+            for (block, part) in blocks.iter_mut().zip(column.chunks_mut(BLOCK)) {
+                block.push(part);
+            }
+        }
+        blocks.par_iter_mut().enumerate().for_each(|(number, block)| {
+            let mut strength = [0.0; MOST];
+            for i in 0..block[0].len() {
+                for (number_of, column) in strengths.iter().enumerate() {
+                    strength[number_of] = column[number * BLOCK + i];
+                }
+                let (charge, dipole) = K::charges(&strength);
+                for density in 0..K::DENSITIES {
+                    block[density][i] = charge[density];
+                    if K::DIPOLES {
+                        for axis in 0..3 {
+                            block[K::DENSITIES + 3 * density + axis][i] = dipole[density][axis];
+                        }
+                    }
+                }
+            }
+        });
+        charges
+    }
+}
+
+impl<K: Far> Planned for Plan<K> {
+    fn apply(&self, strength: Strength<'_>) -> Vec<Vec<f64>> {
+        let order = &self.tree.sources.order;
+        let mut strengths = vec![vec![0.0; order.len()]; K::STRENGTHS];
+        for (place, &number) in order.iter().enumerate() {
+            let strength = strength(number as usize);
+            for (column, value) in strengths.iter_mut().zip(strength) {
+                column[place] = value;
+            }
+        }
         let charges = self.charges(&strengths);
-        let mut grids = self.lend();
+        let mut grids = self.grids.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default();
         self.far.fill::<K>(&self.operators, &self.tree, &charges, &mut grids);
         drop(charges);
-        let targets = self.tree.targets.as_ref().unwrap_or(sources);
-        let near = self.near.sum::<K>(&self.tree, &self.operators, &strengths);
-        let out = self.gather(targets, &near, &grids);
+        let order = &self.targets().order;
+        let mut outputs = vec![vec![0.0; order.len()]; K::OUTPUTS];
+        self.far.read::<K>(&self.operators, &self.tree, &grids, &mut outputs);
         self.grids.lock().unwrap_or_else(PoisonError::into_inner).push(grids);
-        out
-    }
-
-    fn lend(&self) -> Grids {
-        self.grids.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default()
+        self.near.add::<K>(&strengths, &mut outputs);
+        drop(strengths);
+        let unsorted = outputs.par_iter().map(|sorted| {
+            let mut column = vec![0.0; order.len()];
+            for (&number, value) in order.iter().zip(sorted) {
+                column[number as usize] = *value;
+            }
+            column
+        });
+        unsorted.collect()
     }
 }

@@ -42,13 +42,12 @@ fn charges() {
             far.fill::<Laplace<4>>(&operators, &tree, &charges, &mut grids);
             let mut worst = [0.0f64; 4];
             let mut size = [0.0f64; 4];
-            for (number, leaf) in tree.leaves.iter().enumerate() {
-                let count = leaf.targets.len();
-                let mut out = vec![0.0; 4 * count];
-                far.read::<Laplace<4>>(&operators, &tree, &grids, number, &mut out);
-                for (place, target) in leaf.targets.clone().enumerate() {
+            let mut out = vec![vec![0.0; 600]; 4];
+            far.read::<Laplace<4>>(&operators, &tree, &grids, &mut out);
+            for leaf in &tree.leaves {
+                for target in leaf.targets.clone() {
                     let mut exact = [0.0; 4];
-                    let mut found = [0, 1, 2, 3].map(|k| out[k * count + place]);
+                    let mut found = [0, 1, 2, 3].map(|k| out[k][target as usize]);
                     for source in 0..600 {
                         let d: Vec<f64> = (0..3).map(|a| x(target as usize)[a] - x(source)[a]).collect();
                         let r2: f64 = d.iter().map(|d| d * d).sum();

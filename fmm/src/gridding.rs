@@ -1,1 +1,763 @@
-//! (to be written)
+//! From points to the grid of their box, and back.
+//!
+//! A grid is a buffer of `D` densities one after the other, each $g \times g$ rows `[x][y]` of `padded(g)` numbers along $z$. Buffers
+//! that start at a multiple of 64 bytes are the fastest.
+
+use f64_lanes::{Isa, Lanes, PADDING, WithIsa, dispatch, padded};
+
+use crate::window::Window;
+
+/// The widest window: two registers of AVX-512.
+pub(crate) const WIDEST: usize = 2 * PADDING;
+
+/// Numbers in the buffer of a grid of `densities` densities, `points` $= g$ per axis.
+pub(crate) fn grid_len(points: usize, densities: usize) -> usize {
+    densities * points * points * padded(points)
+}
+
+/// A box, for what happens inside.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cube {
+    pub center: [f64; 3],
+    pub side: f64,
+}
+
+/// Adds to the grid of `cube` $\sum_i [c_{di} + \sum_k d_{dki}\,\partial_{x_k}]\,\varphi(x - y_i)$, for each density $d$: charges $c$ and,
+/// if `DIPOLES`, dipole strengths $d_{dk}$ (per unit length of the user, as `cube` is).
+///
+/// All arrays are over the points, which are inside `cube`.
+pub(crate) fn spread<const D: usize, const DIPOLES: bool>(
+    window: &Window,
+    cube: Cube,
+    points: [&[f64]; 3],
+    charges: [&[f64]; D],
+    dipoles: [[&[f64]; 3]; D],
+    grid: &mut [f64],
+) {
+    dispatch(Spread::<D, DIPOLES> {
+        placing: Placing::new(window, cube),
+        points,
+        charges,
+        dipoles,
+        grid,
+    });
+}
+
+/// The `D` grids at points inside `cube`: $\sum_x \varphi(y_i - x)\,G_d(x)$ and, if `GRADIENTS`, its derivatives by $y_i$.
+///
+/// Point by point into `values`: `D` values, then with `GRADIENTS` the `D` gradients, three numbers each.
+pub(crate) fn interpolate<const D: usize, const GRADIENTS: bool>(
+    window: &Window,
+    cube: Cube,
+    points: [&[f64]; 3],
+    grid: &[f64],
+    values: &mut [f64],
+) {
+    dispatch(Interpolate::<D, GRADIENTS> {
+        placing: Placing::new(window, cube),
+        points,
+        grid,
+        values,
+    });
+}
+
+/// Where points stand on a grid.
+#[derive(Clone, Copy)]
+struct Placing<'a> {
+    /// Coefficients of the window, registers of `stride` for each power.
+    coefficients: &'a [f64],
+    stride: usize,
+    width: usize,
+    grid_points: usize,
+    center: [f64; 3],
+    /// Grid spacings per unit length.
+    scale: f64,
+}
+
+impl<'a> Placing<'a> {
+    fn new(window: &'a Window, cube: Cube) -> Self {
+        let values = window.values();
+        assert!(values.stride <= WIDEST);
+        Self {
+            coefficients: &values.coefficients,
+            stride: values.stride,
+            width: window.width(),
+            grid_points: window.points(),
+            center: cube.center,
+            scale: 1.0 / (window.spacing() * cube.side),
+        }
+    }
+
+    /// First grid point in the window of a coordinate, and the argument of the window's polynomials.
+    #[inline(always)]
+    fn start(&self, axis: usize, coordinate: f64) -> (usize, f64) {
+        let last = self.grid_points - self.width;
+        let from = (coordinate - self.center[axis]) * self.scale + 0.5 * (last as f64 - 1.0);
+        // Rounding may put a point on the faces just outside.
+        let start = from.ceil().clamp(0.0, last as f64);
+        (start as usize, 2.0 * (start - from) - 1.0)
+    }
+
+    /// Where density number `d` has its row along z at grid points `x`, `y`.
+    #[inline(always)]
+    fn row(&self, d: usize, x: usize, y: usize) -> usize {
+        ((d * self.grid_points + x) * self.grid_points + y) * padded(self.grid_points)
+    }
+}
+
+/// The window of one point on the three axes.
+#[repr(align(64))]
+struct Stencil {
+    /// First grid point of each axis; along z that of the first register.
+    start: [usize; 3],
+    /// Registers along z, in units of the padding.
+    registers: usize,
+    x: Axis<WIDEST>,
+    y: Axis<WIDEST>,
+    z: Axis<{ WIDEST + 2 * PADDING }>,
+}
+
+/// Values of the window on grid points, and their derivatives by the coordinate of the point.
+#[repr(align(64))]
+struct Axis<const N: usize> {
+    value: [f64; N],
+    slope: [f64; N],
+}
+
+impl Stencil {
+    const fn new() -> Self {
+        Self {
+            start: [0; 3],
+            registers: 0,
+            x: Axis {
+                value: [0.0; WIDEST],
+                slope: [0.0; WIDEST],
+            },
+            y: Axis {
+                value: [0.0; WIDEST],
+                slope: [0.0; WIDEST],
+            },
+            z: Axis {
+                value: [0.0; WIDEST + 2 * PADDING],
+                slope: [0.0; WIDEST + 2 * PADDING],
+            },
+        }
+    }
+
+    /// The stencil of a point, with slopes if `SLOPES`.
+    #[inline(always)]
+    fn place<S: Isa, const SLOPES: bool>(
+        &mut self,
+        simd: S,
+        placing: &Placing<'_>,
+        point: [f64; 3],
+    ) {
+        let (x, sx) = placing.start(0, point[0]);
+        let (y, sy) = placing.start(1, point[1]);
+        let (z, sz) = placing.start(2, point[2]);
+        let s = [sx, sy, sz].map(|s| Lanes::splat(simd, s));
+        let mut along_z = Axis {
+            value: [0.0; WIDEST],
+            slope: [0.0; WIDEST],
+        };
+        let slope_scale = Lanes::splat(simd, -2.0 * placing.scale);
+        for register in 0..placing.stride / Lanes::<S>::COUNT {
+            let mut value = [Lanes::splat(simd, 0.0); 3];
+            let mut slope = value;
+            for power in placing.coefficients.chunks_exact(placing.stride) {
+                let coefficient = Lanes::load(simd, power, register);
+                for axis in 0..3 {
+                    if SLOPES {
+                        slope[axis] = slope[axis].mul_add(s[axis], value[axis]);
+                    }
+                    value[axis] = value[axis].mul_add(s[axis], coefficient);
+                }
+            }
+            value[0].store(&mut self.x.value, register);
+            value[1].store(&mut self.y.value, register);
+            value[2].store(&mut along_z.value, register);
+            if SLOPES {
+                (slope[0] * slope_scale).store(&mut self.x.slope, register);
+                (slope[1] * slope_scale).store(&mut self.y.slope, register);
+                (slope[2] * slope_scale).store(&mut along_z.slope, register);
+            }
+        }
+        let shift = z % PADDING;
+        self.start = [x, y, z - shift];
+        self.registers = (shift + placing.width).div_ceil(PADDING);
+        self.z.value = shifted(&along_z.value, shift);
+        if SLOPES {
+            self.z.slope = shifted(&along_z.slope, shift);
+        }
+    }
+}
+
+/// `values` from number `shift` on, zeros elsewhere.
+#[inline(always)]
+fn shifted(values: &[f64; WIDEST], shift: usize) -> [f64; WIDEST + 2 * PADDING] {
+    let mut shifted = [0.0; WIDEST + 2 * PADDING];
+    shifted[shift % PADDING..][..WIDEST].copy_from_slice(values);
+    shifted
+}
+
+/// `N` times the padding's worth of registers.
+#[derive(Clone, Copy)]
+struct Row<S: Isa, const N: usize>([[Lanes<S>; PADDING]; N]);
+
+impl<S: Isa, const N: usize> Row<S, N> {
+    /// Registers to the padding: only so many of each array are used.
+    const PARTS: usize = PADDING / Lanes::<S>::COUNT;
+
+    #[inline(always)]
+    fn zero(simd: S) -> Self {
+        Self([[Lanes::splat(simd, 0.0); PADDING]; N])
+    }
+
+    #[inline(always)]
+    fn load(simd: S, buffer: &[f64]) -> Self {
+        let buffer = &buffer[..N * PADDING];
+        let mut row = Self::zero(simd);
+        for n in 0..N {
+            for part in 0..Self::PARTS {
+                row.0[n][part] = Lanes::load(simd, buffer, n * Self::PARTS + part);
+            }
+        }
+        row
+    }
+
+    #[inline(always)]
+    fn store(self, buffer: &mut [f64]) {
+        let buffer = &mut buffer[..N * PADDING];
+        for n in 0..N {
+            for part in 0..Self::PARTS {
+                self.0[n][part].store(buffer, n * Self::PARTS + part);
+            }
+        }
+    }
+
+    /// `self += factor * other`.
+    #[inline(always)]
+    fn add(&mut self, factor: Lanes<S>, other: &Self) {
+        for n in 0..N {
+            for part in 0..Self::PARTS {
+                self.0[n][part] = factor.mul_add(other.0[n][part], self.0[n][part]);
+            }
+        }
+    }
+
+    /// The scalar product.
+    #[inline(always)]
+    fn dot(&self, other: &Self) -> f64 {
+        let mut sum = self.0[0][0] * other.0[0][0];
+        for n in 0..N {
+            for part in 0..Self::PARTS {
+                if n + part > 0 {
+                    sum = self.0[n][part].mul_add(other.0[n][part], sum);
+                }
+            }
+        }
+        sum.sum()
+    }
+}
+
+struct Spread<'a, const D: usize, const DIPOLES: bool> {
+    placing: Placing<'a>,
+    points: [&'a [f64]; 3],
+    charges: [&'a [f64]; D],
+    dipoles: [[&'a [f64]; 3]; D],
+    grid: &'a mut [f64],
+}
+
+impl<const D: usize, const DIPOLES: bool> WithIsa for Spread<'_, D, DIPOLES> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_isa<S: Isa>(self, simd: S) {
+        let mut stencil = Stencil::new();
+        for i in 0..self.points[0].len() {
+            let point = self.points.map(|axis| axis[i]);
+            stencil.place::<S, DIPOLES>(simd, &self.placing, point);
+            let charges = self.charges.map(|charge| charge[i]);
+            // The window goes up with the distance to a grid point as it goes down with the place of its own point.
+            let dipoles = if DIPOLES {
+                self.dipoles.map(|dipole| dipole.map(|axis| -axis[i]))
+            } else {
+                [[0.0; 3]; D]
+            };
+            match stencil.registers {
+                1 => spread_point::<S, D, DIPOLES, 1>(
+                    simd,
+                    &self.placing,
+                    &stencil,
+                    charges,
+                    dipoles,
+                    self.grid,
+                ),
+                2 => spread_point::<S, D, DIPOLES, 2>(
+                    simd,
+                    &self.placing,
+                    &stencil,
+                    charges,
+                    dipoles,
+                    self.grid,
+                ),
+                _ => spread_point::<S, D, DIPOLES, 3>(
+                    simd,
+                    &self.placing,
+                    &stencil,
+                    charges,
+                    dipoles,
+                    self.grid,
+                ),
+            }
+        }
+    }
+}
+
+/// Adds one point to the grid.
+#[inline(always)]
+fn spread_point<S: Isa, const D: usize, const DIPOLES: bool, const N: usize>(
+    simd: S,
+    placing: &Placing<'_>,
+    stencil: &Stencil,
+    charges: [f64; D],
+    dipoles: [[f64; 3]; D],
+    grid: &mut [f64],
+) {
+    let [x0, y0, z0] = stencil.start;
+    let value = Row::<S, N>::load(simd, &stencil.z.value);
+    let slope = Row::<S, N>::load(simd, &stencil.z.slope);
+    for x in 0..placing.width {
+        let (wx, dx) = (stencil.x.value[x], stencil.x.slope[x]);
+        for d in 0..D {
+            let along_y = Lanes::splat(
+                simd,
+                charges[d] * wx + if DIPOLES { dipoles[d][0] * dx } else { 0.0 },
+            );
+            let slope_y = Lanes::splat(simd, dipoles[d][1] * wx);
+            let slope_z = Lanes::splat(simd, dipoles[d][2] * wx);
+            let start = placing.row(d, x0 + x, y0) + z0;
+            let rows = grid[start..].chunks_mut(padded(placing.grid_points));
+            for (y, row) in (0..placing.width).zip(rows) {
+                let wy = Lanes::splat(simd, stencil.y.value[y]);
+                let mut sum = Row::<S, N>::load(simd, row);
+                if DIPOLES {
+                    let dy = Lanes::splat(simd, stencil.y.slope[y]);
+                    sum.add(along_y.mul_add(wy, slope_y * dy), &value);
+                    sum.add(slope_z * wy, &slope);
+                } else {
+                    sum.add(along_y * wy, &value);
+                }
+                sum.store(row);
+            }
+        }
+    }
+}
+
+struct Interpolate<'a, const D: usize, const GRADIENTS: bool> {
+    placing: Placing<'a>,
+    points: [&'a [f64]; 3],
+    grid: &'a [f64],
+    values: &'a mut [f64],
+}
+
+impl<const D: usize, const GRADIENTS: bool> WithIsa for Interpolate<'_, D, GRADIENTS> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_isa<S: Isa>(self, simd: S) {
+        let numbers = if GRADIENTS { 4 * D } else { D };
+        let mut stencil = Stencil::new();
+        for (i, values) in self.values.chunks_exact_mut(numbers).enumerate() {
+            let point = self.points.map(|axis| axis[i]);
+            stencil.place::<S, GRADIENTS>(simd, &self.placing, point);
+            match stencil.registers {
+                1 => interpolate_point::<S, D, GRADIENTS, 1>(
+                    simd,
+                    &self.placing,
+                    &stencil,
+                    self.grid,
+                    values,
+                ),
+                2 => interpolate_point::<S, D, GRADIENTS, 2>(
+                    simd,
+                    &self.placing,
+                    &stencil,
+                    self.grid,
+                    values,
+                ),
+                _ => interpolate_point::<S, D, GRADIENTS, 3>(
+                    simd,
+                    &self.placing,
+                    &stencil,
+                    self.grid,
+                    values,
+                ),
+            }
+        }
+    }
+}
+
+/// The grids at one point. With gradients one after the other, so that the sums stay in registers.
+#[inline(always)]
+fn interpolate_point<S: Isa, const D: usize, const GRADIENTS: bool, const N: usize>(
+    simd: S,
+    placing: &Placing<'_>,
+    stencil: &Stencil,
+    grid: &[f64],
+    values: &mut [f64],
+) {
+    let value = Row::<S, N>::load(simd, &stencil.z.value);
+    if GRADIENTS {
+        let slope = Row::<S, N>::load(simd, &stencil.z.slope);
+        for d in 0..D {
+            let sums = gradient_rows::<S, N>(simd, placing, stencil, grid, d);
+            values[d] = sums[0].dot(&value);
+            values[D + 3 * d] = sums[1].dot(&value);
+            values[D + 3 * d + 1] = sums[2].dot(&value);
+            values[D + 3 * d + 2] = sums[0].dot(&slope);
+        }
+    } else {
+        let sums = value_rows::<S, D, N>(simd, placing, stencil, grid);
+        for d in 0..D {
+            values[d] = sums[d].dot(&value);
+        }
+    }
+}
+
+/// Rows of all densities, weighted along x and y.
+#[inline(always)]
+fn value_rows<S: Isa, const D: usize, const N: usize>(
+    simd: S,
+    placing: &Placing<'_>,
+    stencil: &Stencil,
+    grid: &[f64],
+) -> [Row<S, N>; D] {
+    let [x0, y0, z0] = stencil.start;
+    let mut sums = [Row::zero(simd); D];
+    for x in 0..placing.width {
+        let wx = Lanes::splat(simd, stencil.x.value[x]);
+        for y in 0..placing.width {
+            let weight = wx * stencil.y.value[y];
+            for d in 0..D {
+                let start = placing.row(d, x0 + x, y0 + y) + z0;
+                sums[d].add(weight, &Row::load(simd, &grid[start..]));
+            }
+        }
+    }
+    sums
+}
+
+/// Rows of density `d` weighted along x and y: by the window, and by its slope along x and along y.
+#[inline(always)]
+fn gradient_rows<S: Isa, const N: usize>(
+    simd: S,
+    placing: &Placing<'_>,
+    stencil: &Stencil,
+    grid: &[f64],
+    d: usize,
+) -> [Row<S, N>; 3] {
+    let [x0, y0, z0] = stencil.start;
+    let mut sums = [Row::zero(simd); 3];
+    for x in 0..placing.width {
+        let wx = Lanes::splat(simd, stencil.x.value[x]);
+        let dx = Lanes::splat(simd, stencil.x.slope[x]);
+        let start = placing.row(d, x0 + x, y0) + z0;
+        let rows = grid[start..].chunks(padded(placing.grid_points));
+        for (y, row) in (0..placing.width).zip(rows) {
+            let row = Row::load(simd, row);
+            let wy = Lanes::splat(simd, stencil.y.value[y]);
+            let dy = Lanes::splat(simd, stencil.y.slope[y]);
+            sums[0].add(wx * wy, &row);
+            sums[1].add(dx * wy, &row);
+            sums[2].add(wx * dy, &row);
+        }
+    }
+    sums
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+    use std::time::Instant;
+
+    use fastrand::Rng;
+
+    use super::*;
+
+    const CUBE: Cube = Cube {
+        center: [0.3, -1.1, 2.0],
+        side: 0.6,
+    };
+
+    fn random(rng: &mut Rng, count: usize) -> Vec<f64> {
+        (0..count).map(|_| 2.0 * rng.f64() - 1.0).collect()
+    }
+
+    /// Points in the cube, the first two at opposite corners.
+    fn points(rng: &mut Rng, count: usize) -> [Vec<f64>; 3] {
+        std::array::from_fn(|axis| {
+            let mut unit = random(rng, count);
+            (unit[0], unit[1]) = (-1.0, 1.0);
+            unit.iter()
+                .map(|x| CUBE.center[axis] + 0.5 * CUBE.side * x)
+                .collect()
+        })
+    }
+
+    fn slices<const N: usize>(vectors: &[Vec<f64>; N]) -> [&[f64]; N] {
+        std::array::from_fn(|i| vectors[i].as_slice())
+    }
+
+    /// `D` charges and dipoles for each point, at random.
+    struct Densities<const D: usize> {
+        charges: [Vec<f64>; D],
+        dipoles: [[Vec<f64>; 3]; D],
+    }
+
+    impl<const D: usize> Densities<D> {
+        fn new(rng: &mut Rng, count: usize) -> Self {
+            Self {
+                charges: std::array::from_fn(|_| random(rng, count)),
+                dipoles: std::array::from_fn(|_| std::array::from_fn(|_| random(rng, count))),
+            }
+        }
+
+        fn spread<const DIPOLES: bool>(&self, window: &Window, points: &[Vec<f64>; 3]) -> Vec<f64> {
+            let mut grid = vec![0.0; grid_len(window.points(), D)];
+            let dipoles = std::array::from_fn(|d| slices(&self.dipoles[d]));
+            spread::<D, DIPOLES>(
+                window,
+                CUBE,
+                slices(points),
+                slices(&self.charges),
+                dipoles,
+                &mut grid,
+            );
+            grid
+        }
+    }
+
+    /// $\frac1{\hat\varphi}\sum_x G_d(x)\,e^{-ik\cdot x}$, real and imaginary, with $k$ and $x$ in box units.
+    fn wave(window: &Window, grid: &[f64], d: usize, k: [f64; 3]) -> [f64; 2] {
+        let g = window.points();
+        let at = |i: usize| (i as f64 - 0.5 * (g - 1) as f64) * window.spacing();
+        let norm: f64 = k.map(|k| window.fourier(k)).iter().product();
+        let mut sum = [0.0; 2];
+        for x in 0..g {
+            for y in 0..g {
+                for z in 0..g {
+                    let value = grid[((d * g + x) * g + y) * padded(g) + z] / norm;
+                    let phase = k[0] * at(x) + k[1] * at(y) + k[2] * at(z);
+                    sum[0] += value * phase.cos();
+                    sum[1] -= value * phase.sin();
+                }
+            }
+        }
+        sum
+    }
+
+    #[test]
+    fn waves_are_those_of_the_points() {
+        let mut rng = Rng::with_seed(1);
+        for (width, grid_points, waves, bound) in
+            [(6, 16, 10, 3e-4), (8, 24, 17, 1e-5), (12, 36, 24, 4e-9)]
+        {
+            let window = Window::new(width, grid_points, waves);
+            let points = points(&mut rng, 5);
+            let densities = Densities::<3>::new(&mut rng, 5);
+            let grids = [
+                densities.spread::<false>(&window, &points),
+                densities.spread::<true>(&window, &points),
+            ];
+            let unit = 2.0 * PI / 3.0;
+            for index in [[0, 0, 0], [1, 2, -3], [-4, 5, 1], [waves as i32 - 1, 0, -2]] {
+                let k = index.map(|j| unit * j as f64);
+                for d in 0..3 {
+                    for (dipoles, grid) in grids.iter().enumerate() {
+                        let mut expected = [0.0; 2];
+                        let mut size = 0.0;
+                        for i in 0..5 {
+                            let phase: f64 = (0..3)
+                                .map(|a| k[a] * (points[a][i] - CUBE.center[a]) / CUBE.side)
+                                .sum();
+                            let charge = densities.charges[d][i];
+                            // (c + i k.d) e^{-i phase}
+                            let slope: f64 = (0..3)
+                                .map(|a| {
+                                    dipoles as f64 * k[a] / CUBE.side * densities.dipoles[d][a][i]
+                                })
+                                .sum();
+                            expected[0] += charge * phase.cos() + slope * phase.sin();
+                            expected[1] += slope * phase.cos() - charge * phase.sin();
+                            size += charge.abs();
+                            for dipole in &densities.dipoles[d] {
+                                size += unit * waves as f64 / CUBE.side * dipole[i].abs();
+                            }
+                        }
+                        let found = wave(&window, grid, d, k);
+                        let error = (found[0] - expected[0]).hypot(found[1] - expected[1]);
+                        assert!(
+                            error < bound * size,
+                            "{width} {index:?} {d} {dipoles}: {error:e} {size}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    fn transposed<const D: usize>(width: usize, grid_points: usize) {
+        const COUNT: usize = 37;
+        let mut rng = Rng::with_seed(2);
+        let window = Window::new(width, grid_points, 10);
+        let points = points(&mut rng, COUNT);
+        let mut densities = Densities::<D>::new(&mut rng, COUNT);
+        let potential = random(&mut rng, grid_len(grid_points, D));
+        let mut values = vec![0.0; COUNT * D];
+        let mut gradients = vec![0.0; COUNT * 4 * D];
+        interpolate::<D, false>(&window, CUBE, slices(&points), &potential, &mut values);
+        interpolate::<D, true>(&window, CUBE, slices(&points), &potential, &mut gradients);
+
+        let product = |grid: &[f64]| grid.iter().zip(&potential).map(|(a, b)| a * b).sum::<f64>();
+        let (mut charge_product, mut dipole_product) = (0.0, 0.0);
+        for i in 0..COUNT {
+            for d in 0..D {
+                let (value, same) = (values[i * D + d], gradients[i * 4 * D + d]);
+                assert!((value - same).abs() < 1e-12);
+                charge_product += densities.charges[d][i] * value;
+                for a in 0..3 {
+                    dipole_product -=
+                        densities.dipoles[d][a][i] * gradients[i * 4 * D + D + 3 * d + a];
+                }
+            }
+        }
+        let size = (COUNT * D) as f64;
+        let error = product(&densities.spread::<false>(&window, &points)) - charge_product;
+        assert!(error.abs() < 1e-13 * size, "{error:e}");
+        densities
+            .charges
+            .iter_mut()
+            .for_each(|charge| charge.fill(0.0));
+        let error = product(&densities.spread::<true>(&window, &points)) - dipole_product;
+        assert!(error.abs() < 1e-12 * size, "{error:e}");
+    }
+
+    #[test]
+    fn interpolation_is_the_transpose_of_spreading() {
+        for (width, points) in [(5, 14), (6, 16), (8, 24), (11, 32), (16, 48)] {
+            transposed::<1>(width, points);
+            transposed::<3>(width, points);
+            transposed::<4>(width, points);
+        }
+    }
+
+    #[test]
+    fn gradients_are_those_of_the_values() {
+        let mut rng = Rng::with_seed(3);
+        let window = Window::new(8, 24, 17);
+        let potential = random(&mut rng, grid_len(24, 1));
+        let step = 1e-6;
+        for _ in 0..20 {
+            let point: [f64; 3] = std::array::from_fn(|axis| {
+                CUBE.center[axis] + 0.49 * CUBE.side * (2.0 * rng.f64() - 1.0)
+            });
+            let value = |point: [f64; 3]| {
+                let mut value = [0.0];
+                let points = [&point[..1], &point[1..2], &point[2..]];
+                interpolate::<1, false>(&window, CUBE, points, &potential, &mut value);
+                value[0]
+            };
+            let mut found = [0.0; 4];
+            let points = [&point[..1], &point[1..2], &point[2..]];
+            interpolate::<1, true>(&window, CUBE, points, &potential, &mut found);
+            for axis in 0..3 {
+                let (mut above, mut below) = (point, point);
+                above[axis] += step;
+                below[axis] -= step;
+                let difference = (value(above) - value(below)) / (2.0 * step);
+                assert!(
+                    (found[axis + 1] - difference).abs() < 1e-5 * found[axis + 1].abs().max(1.0)
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn no_points() {
+        let window = Window::new(6, 16, 10);
+        let mut grid = vec![0.0; grid_len(16, 1)];
+        spread::<1, false>(&window, CUBE, [&[]; 3], [&[]], [[&[]; 3]], &mut grid);
+        interpolate::<1, false>(&window, CUBE, [&[]; 3], &grid, &mut []);
+        assert!(grid.iter().all(|x| *x == 0.0));
+    }
+
+    /// Nanoseconds per point, best of several: `cargo test --release -p stokes-fmm gridding_speed -- --ignored --nocapture`.
+    #[test]
+    #[ignore = "a measurement"]
+    fn gridding_speed() {
+        const COUNT: usize = 2000;
+        let mut rng = Rng::with_seed(4);
+        for (width, grid_points) in [(6, 16), (8, 24), (12, 36), (11, 32), (16, 48)] {
+            let window = Window::new(width, grid_points, grid_points * 2 / 3);
+            let mut points = points(&mut rng, COUNT);
+            // Sorted by cells of an eighth of the box.
+            let cell = |axis: usize, i: usize| {
+                ((points[axis][i] - CUBE.center[axis]) / CUBE.side * 8.0).floor() as i64
+            };
+            let mut order: Vec<usize> = (0..COUNT).collect();
+            order.sort_by_key(|&i| (cell(0, i), cell(1, i), cell(2, i)));
+            points = std::array::from_fn(|axis| order.iter().map(|&i| points[axis][i]).collect());
+            let densities = Densities::<3>::new(&mut rng, COUNT);
+            let dipoles = std::array::from_fn(|d| slices(&densities.dipoles[d]));
+            let charges = slices(&densities.charges);
+            let len = grid_len(grid_points, 3);
+            let mut buffer = vec![0.0; len + 8];
+            let start = buffer.as_ptr().align_offset(64);
+            let grid = &mut buffer[start..][..len];
+            let mut values = vec![0.0; COUNT * 12];
+            let mut best = [f64::INFINITY; 4];
+            for _ in 0..15 {
+                let mut time = |work: &mut dyn FnMut(), kind: usize| {
+                    let from = Instant::now();
+                    work();
+                    best[kind] = best[kind].min(from.elapsed().as_nanos() as f64 / COUNT as f64);
+                };
+                time(
+                    &mut || {
+                        spread::<3, false>(&window, CUBE, slices(&points), charges, dipoles, grid)
+                    },
+                    0,
+                );
+                time(
+                    &mut || {
+                        spread::<3, true>(&window, CUBE, slices(&points), charges, dipoles, grid)
+                    },
+                    1,
+                );
+                time(
+                    &mut || {
+                        interpolate::<3, false>(
+                            &window,
+                            CUBE,
+                            slices(&points),
+                            grid,
+                            &mut values[..3 * COUNT],
+                        )
+                    },
+                    2,
+                );
+                time(
+                    &mut || {
+                        interpolate::<3, true>(&window, CUBE, slices(&points), grid, &mut values)
+                    },
+                    3,
+                );
+            }
+            println!(
+                "w = {width}, g = {grid_points}: spread {:.0}, dipoles {:.0}, values {:.0}, gradients {:.0} ns",
+                best[0], best[1], best[2], best[3]
+            );
+        }
+    }
+}

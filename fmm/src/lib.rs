@@ -11,6 +11,7 @@ mod kernel;
 mod near_field;
 mod operators;
 mod parameters;
+mod plan;
 mod polynomial;
 mod prolate;
 mod splitting;

@@ -198,6 +198,7 @@ fn truncated_distance(x: f64) -> f64 {
 mod tests {
     use super::*;
 
+    #[expect(clippy::excessive_precision)]
     /// Waves, $t$, $b_1..b_4$: from $\Phi$, $\psi$, $\psi'$, $\psi''$ in closed form, mpmath with 60 digits.
     const CHAIN: [(usize, f64, [f64; ORDERS]); 6] = [
         (
@@ -262,6 +263,7 @@ mod tests {
         ),
     ];
 
+    #[expect(clippy::excessive_precision)]
     /// Waves, $k$, transform of the difference (mpmath, 60 digits) and of the root's kernel (its integral by mpmath's quadrature).
     const TRANSFORMS: [(usize, f64, f64, f64); 8] = [
         (17, 0.01, -0.00031968306535108771, -0.20683534503874992),

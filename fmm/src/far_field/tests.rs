@@ -86,7 +86,7 @@ fn charges() {
 
 fn sets() -> Vec<(Parameters, f64)> {
     [(6, 16, 10, 1e-3), (8, 24, 17, 1e-6), (12, 36, 24, 1e-9), (16, 48, 32, 1e-12)]
-        .map(|(width, points, waves, accuracy)| (Parameters { width, points, waves, accuracy, ..Parameters::default() }, accuracy))
+        .map(|(width, points, waves, accuracy)| (Parameters { width, points, waves, accuracy, precision: f64_lanes::Precision::Full }, accuracy))
         .to_vec()
 }
 

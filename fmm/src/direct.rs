@@ -6,8 +6,9 @@ use f64_lanes::{Isa, Lanes, Precision, WithIsa, dispatch};
 use rayon::prelude::*;
 
 use crate::FmmError;
-use crate::flow::{Flow, Output, Singularities, Strengths, check, check_positions};
-use crate::kernel::{Chain, Laplace, MOST, Pair, Stokes};
+use crate::far::Far;
+use crate::flow::{Flow, Output, Strengths, check, check_positions};
+use crate::kernel::{Chain, Laplace, MOST, Pair, WithKernel, with_stokes};
 
 /// The flow of `strengths` at `sources`, seen at `targets`, which may be the sources themselves.
 ///
@@ -44,30 +45,22 @@ pub fn sum(
     let precision = precision(tolerance)?;
     let singularities = strengths.singularities();
     let records = records(sources, scale, singularities.count(), |index| {
-        let mut all = strengths.of(index, singularities);
-        weigh(&mut all, singularities, scale);
-        all
+        let mut strength = strengths.of(index, singularities);
+        singularities.weigh(&mut strength, scale);
+        strength
     });
     let problem = Problem {
         records,
         targets: scaled(targets, scale),
         precision,
     };
-    let columns = match (singularities, output) {
-        (Singularities::Stokeslets, Output::Velocity) => problem.sum::<Stokes<3, 3>>(),
-        (Singularities::Stokeslets, Output::Pressure) => problem.sum::<Stokes<3, 4>>(),
-        (Singularities::Stokeslets, Output::Gradient) => problem.sum::<Stokes<3, 13>>(),
-        (Singularities::Stresslets, Output::Velocity) => problem.sum::<Stokes<6, 3>>(),
-        (Singularities::Stresslets, Output::Pressure) => problem.sum::<Stokes<6, 4>>(),
-        (Singularities::Stresslets, Output::Gradient) => problem.sum::<Stokes<6, 13>>(),
-        (Singularities::Both, Output::Velocity) => problem.sum::<Stokes<9, 3>>(),
-        (Singularities::Both, Output::Pressure) => problem.sum::<Stokes<9, 4>>(),
-        (Singularities::Both, Output::Gradient) => problem.sum::<Stokes<9, 13>>(),
-        (Singularities::All, Output::Velocity) => problem.sum::<Stokes<13, 3>>(),
-        (Singularities::All, Output::Pressure) => problem.sum::<Stokes<13, 4>>(),
-        (Singularities::All, Output::Gradient) => problem.sum::<Stokes<13, 13>>(),
-    };
-    Ok(flow(&columns, output, targets.len(), scale))
+    let columns = with_stokes(singularities, output, problem);
+    Ok(Flow::assemble(
+        output,
+        targets.len(),
+        scale,
+        |target, output| columns.at(target, output),
+    ))
 }
 
 /// The potential $\sum q / 4 \pi r$ of charges, and its gradient if `gradient` (else empty), at `targets`, which
@@ -132,20 +125,8 @@ fn scaled(positions: &[[f64; 3]], scale: f64) -> Vec<[f64; 3]> {
     scaled.collect()
 }
 
-/// The velocity of all but the Stokeslets is of one order more in the length: their strengths take that factor.
-fn weigh(strength: &mut [f64; MOST], singularities: Singularities, scale: f64) {
-    match singularities {
-        Singularities::Stokeslets => {}
-        Singularities::Stresslets => strength[..3].iter_mut().for_each(|q| *q *= scale),
-        Singularities::Both | Singularities::All => {
-            strength[3..6].iter_mut().for_each(|q| *q *= scale);
-            strength[9..].iter_mut().for_each(|q| *q *= scale);
-        }
-    }
-}
-
 /// Position and strengths of each source, one source after the other.
-fn records(
+pub(crate) fn records(
     sources: &[[f64; 3]],
     scale: f64,
     strengths: usize,
@@ -159,26 +140,6 @@ fn records(
     records
 }
 
-/// The columns as a flow, in the user's scale.
-fn flow(columns: &Columns, output: Output, targets: usize, scale: f64) -> Flow {
-    let mut flow = Flow {
-        velocity: (0..targets)
-            .map(|i| [0, 1, 2].map(|k| columns.at(i, k) * scale))
-            .collect(),
-        ..Flow::default()
-    };
-    let slope = |i, k| columns.at(i, k) * scale * scale;
-    if output != Output::Velocity {
-        flow.pressure = (0..targets).map(|i| slope(i, 3)).collect();
-    }
-    if output == Output::Gradient {
-        flow.gradient = (0..targets)
-            .map(|i| [4, 7, 10].map(|row| [0, 1, 2].map(|k| slope(i, row + k))))
-            .collect();
-    }
-    flow
-}
-
 /// Targets that one task takes.
 const CHUNK: usize = 128;
 /// Sources that stay in the first-level cache while the targets of a chunk pass.
@@ -187,27 +148,36 @@ const BLOCK: usize = 256;
 const REGISTERS: usize = 2;
 
 /// Records of sources against targets.
-struct Problem {
-    records: Vec<f64>,
-    targets: Vec<[f64; 3]>,
-    precision: Precision,
+pub(crate) struct Problem {
+    /// Position and strengths of each source.
+    pub records: Vec<f64>,
+    pub targets: Vec<[f64; 3]>,
+    pub precision: Precision,
+}
+
+impl WithKernel for Problem {
+    type Output = Columns;
+
+    fn run<K: Far>(self) -> Columns {
+        self.sum::<K>()
+    }
 }
 
 /// Results, chunk by chunk of targets, in each chunk output by output.
-struct Columns {
+pub(crate) struct Columns {
     outputs: usize,
     numbers: Vec<f64>,
 }
 
 impl Columns {
-    fn at(&self, target: usize, output: usize) -> f64 {
+    pub fn at(&self, target: usize, output: usize) -> f64 {
         let (chunk, place) = (target / CHUNK, target % CHUNK);
         self.numbers[(chunk * self.outputs + output) * CHUNK + place]
     }
 }
 
 impl Problem {
-    fn sum<P: Pair>(mut self) -> Columns {
+    pub fn sum<P: Pair>(mut self) -> Columns {
         let stride = 3 + P::STRENGTHS;
         for record in self.records.chunks_exact_mut(stride) {
             for (strength, factor) in record[3..].iter_mut().zip(P::FACTORS) {

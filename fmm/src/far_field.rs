@@ -50,15 +50,24 @@ impl FarField {
     pub fn new(tree: &Tree) -> Self {
         let levels = tree.levels.iter().map(|level| {
             let with = |full: fn(&GriddedBox) -> bool| -> Vec<u32> {
-                (0..level.boxes.len() as u32).filter(|&b| full(&level.boxes[b as usize])).collect()
+                (0..level.boxes.len() as u32)
+                    .filter(|&b| full(&level.boxes[b as usize]))
+                    .collect()
             };
             let sources = with(|b| !b.sources.is_empty());
             let targets = with(|b| !b.targets.is_empty());
             let places = |boxes: &[u32]| -> Vec<[i64; 3]> {
-                boxes.iter().map(|&b| level.boxes[b as usize].place).collect()
+                boxes
+                    .iter()
+                    .map(|&b| level.boxes[b as usize].place)
+                    .collect()
             };
             let sweeps = Sweeps::new(&places(&sources), &places(&targets));
-            LevelPlan { sources, targets, sweeps }
+            LevelPlan {
+                sources,
+                targets,
+                sweeps,
+            }
         });
         let mut homes = vec![[0; 2]; tree.leaves.len()];
         for (depth, level) in tree.levels.iter().enumerate() {
@@ -68,11 +77,20 @@ impl FarField {
                 }
             }
         }
-        Self { levels: levels.collect(), homes }
+        Self {
+            levels: levels.collect(),
+            homes,
+        }
     }
 
     /// Lays the charges on the grids, and leaves potentials there.
-    pub fn fill<K: Far>(&self, operators: &Operators, tree: &Tree, charges: &Charges, grids: &mut Grids) {
+    pub fn fill<K: Far>(
+        &self,
+        operators: &Operators,
+        tree: &Tree,
+        charges: &Charges,
+        grids: &mut Grids,
+    ) {
         let shape = operators.shape;
         let len = shape.len(FIELDS.min(K::DENSITIES.max(K::POTENTIALS)));
         grids.levels.resize_with(tree.levels.len(), Vec::new);
@@ -91,7 +109,7 @@ impl FarField {
             let t = std::time::Instant::now();
             if depth > 0 {
                 self.down::<K>(operators, tree, grids, depth, len);
-            eprintln!("down {depth} {:?}", t.elapsed());
+                eprintln!("down {depth} {:?}", t.elapsed());
             }
         }
     }
@@ -110,37 +128,49 @@ impl FarField {
         let (coarse, fine) = grids.levels.split_at_mut(depth + 1);
         let children = fine.first().map_or(&[][..], |fine| &fine[..]);
         let finer = tree.levels.get(depth + 1);
-        coarse[depth].par_chunks_exact_mut(len).enumerate().for_each_init(
-            || operators.transfer.scratch(),
-            |scratch, (number, grid)| {
-                let gridded = &level.boxes[number];
-                if gridded.sources.is_empty() {
-                    return;
-                }
-                grid.fill(0.0);
-                for leaf in &tree.leaves[gridded.leaves.start as usize..gridded.leaves.end as usize] {
-                    let range = leaf.sources.start as usize..leaf.sources.end as usize;
-                    if !range.is_empty() {
-                        let cube = Cube { center: gridded.center, side: level.side };
-                        spread::<K>(operators, cube, &tree.sources, charges, range, grid);
+        coarse[depth]
+            .par_chunks_exact_mut(len)
+            .enumerate()
+            .for_each_init(
+                || operators.transfer.scratch(),
+                |scratch, (number, grid)| {
+                    let gridded = &level.boxes[number];
+                    if gridded.sources.is_empty() {
+                        return;
                     }
-                }
-                let Some(finer) = finer else { return };
-                for child in gridded.children.clone().filter(|&c| !finer.boxes[c as usize].sources.is_empty()) {
-                    let octant = finer.boxes[child as usize].octant;
-                    let from = &children[child as usize * len..][..len];
-                    dispatch(Handing {
-                        up: true,
-                        fields: K::DENSITIES,
-                        octant,
-                        from,
-                        to: grid,
-                        operators,
-                        scratch,
-                    });
-                }
-            },
-        );
+                    grid.fill(0.0);
+                    for leaf in
+                        &tree.leaves[gridded.leaves.start as usize..gridded.leaves.end as usize]
+                    {
+                        let range = leaf.sources.start as usize..leaf.sources.end as usize;
+                        if !range.is_empty() {
+                            let cube = Cube {
+                                center: gridded.center,
+                                side: level.side,
+                            };
+                            spread::<K>(operators, cube, &tree.sources, charges, range, grid);
+                        }
+                    }
+                    let Some(finer) = finer else { return };
+                    for child in gridded
+                        .children
+                        .clone()
+                        .filter(|&c| !finer.boxes[c as usize].sources.is_empty())
+                    {
+                        let octant = finer.boxes[child as usize].octant;
+                        let from = &children[child as usize * len..][..len];
+                        dispatch(Handing {
+                            up: true,
+                            fields: K::DENSITIES,
+                            octant,
+                            from,
+                            to: grid,
+                            operators,
+                            scratch,
+                        });
+                    }
+                },
+            );
     }
 
     /// Charges of all boxes of a level to potentials, by plane waves.
@@ -162,18 +192,44 @@ impl FarField {
             return;
         }
         let tt = std::time::Instant::now();
-        let Grids { levels, waves, translated } = grids;
+        let Grids {
+            levels,
+            waves,
+            translated,
+        } = grids;
         let fields = &mut levels[depth];
         let batch_len = K::POTENTIALS * transform.waves_len();
         waves.resize(plan.sources.len().div_ceil(BATCH) * batch_len, 0.0);
         let shape = operators.shape;
-        waves.par_chunks_exact_mut(batch_len).zip(plan.sources.par_chunks(BATCH)).for_each_init(
-            || (transform.scratch(), vec![0.0; K::DENSITIES * transform.waves_len()]),
-            |(scratch, densities), (waves, batch)| {
-                dispatch(Forward::<K> { transform, shape, fields, len, batch, densities, scratch, kernel: PhantomData });
-                dispatch(Multiply { symbol, side: level.side, densities, potentials: waves });
-            },
-        );
+        waves
+            .par_chunks_exact_mut(batch_len)
+            .zip(plan.sources.par_chunks(BATCH))
+            .for_each_init(
+                || {
+                    (
+                        transform.scratch(),
+                        vec![0.0; K::DENSITIES * transform.waves_len()],
+                    )
+                },
+                |(scratch, densities), (waves, batch)| {
+                    dispatch(Forward::<K> {
+                        transform,
+                        shape,
+                        fields,
+                        len,
+                        batch,
+                        densities,
+                        scratch,
+                        kernel: PhantomData,
+                    });
+                    dispatch(Multiply {
+                        symbol,
+                        side: level.side,
+                        densities,
+                        potentials: waves,
+                    });
+                },
+            );
         let mut boxes: Vec<&mut [f64]> = fields
             .chunks_exact_mut(len)
             .zip(&level.boxes)
@@ -185,7 +241,8 @@ impl FarField {
         for potential in 0..K::POTENTIALS {
             let tt = std::time::Instant::now();
             let field = |batch: usize| -> &[f64] {
-                &waves[batch * batch_len + potential * transform.waves_len()..][..transform.waves_len()]
+                &waves[batch * batch_len + potential * transform.waves_len()..]
+                    [..transform.waves_len()]
             };
             if depth > 0 {
                 operators.turns.translate(&plan.sweeps, field, translated);
@@ -202,9 +259,17 @@ impl FarField {
                         waves.copy_from_slice(field(0));
                     }
                     let at = potential * shape.field();
-                    let mut grids: Vec<&mut [f64]> =
-                        boxes.iter_mut().map(|grid| &mut grid[at..at + shape.field()]).collect();
-                    dispatch(Backward { transform, waves, grids: &mut grids, stride: shape.stride(), scratch });
+                    let mut grids: Vec<&mut [f64]> = boxes
+                        .iter_mut()
+                        .map(|grid| &mut grid[at..at + shape.field()])
+                        .collect();
+                    dispatch(Backward {
+                        transform,
+                        waves,
+                        grids: &mut grids,
+                        stride: shape.stride(),
+                        scratch,
+                    });
                 },
             );
             eprintln!("  backward {:?}", tt.elapsed());
@@ -223,53 +288,72 @@ impl FarField {
         let (coarse, fine) = grids.levels.split_at_mut(depth);
         let parents = &coarse[depth - 1];
         let level = &tree.levels[depth];
-        fine[0].par_chunks_exact_mut(len).zip(&level.boxes).for_each_init(
-            || operators.transfer.scratch(),
-            |scratch, (grid, gridded)| {
-                if gridded.targets.is_empty() {
-                    return;
-                }
-                dispatch(Handing {
-                    up: false,
-                    fields: K::POTENTIALS,
-                    octant: gridded.octant,
-                    from: &parents[gridded.parent as usize * len..][..len],
-                    to: grid,
-                    operators,
-                    scratch,
-                });
-            },
-        );
+        fine[0]
+            .par_chunks_exact_mut(len)
+            .zip(&level.boxes)
+            .for_each_init(
+                || operators.transfer.scratch(),
+                |scratch, (grid, gridded)| {
+                    if gridded.targets.is_empty() {
+                        return;
+                    }
+                    dispatch(Handing {
+                        up: false,
+                        fields: K::POTENTIALS,
+                        octant: gridded.octant,
+                        from: &parents[gridded.parent as usize * len..][..len],
+                        to: grid,
+                        operators,
+                        scratch,
+                    });
+                },
+            );
     }
 
     /// Adds the potentials and, behind them, the derivatives of as many of them as there are outputs left, to
     /// `outputs`: columns over the targets in the tree's order.
-    pub fn read<K: Far>(&self, operators: &Operators, tree: &Tree, grids: &Grids, outputs: &mut [Vec<f64>]) {
+    pub fn read<K: Far>(
+        &self,
+        operators: &Operators,
+        tree: &Tree,
+        grids: &Grids,
+        outputs: &mut [Vec<f64>],
+    ) {
         let points = tree.target_points();
         let mut parts = self.parts(tree, outputs);
         let len = operators.shape.len(K::DENSITIES.max(K::POTENTIALS));
         let numbers = K::POTENTIALS * if K::GRADIENTS { 4 } else { 1 };
-        parts.par_iter_mut().for_each_init(Vec::new, |values, (leaf, columns)| {
-            let [depth, number] = self.homes[*leaf as usize].map(|at| at as usize);
-            let level = &tree.levels[depth];
-            let targets = tree.leaves[*leaf as usize].targets.clone();
-            let range = targets.start as usize..targets.end as usize;
-            let grid = &grids.levels[depth][number * len..][..K::POTENTIALS * operators.shape.field()];
-            values.clear();
-            values.resize(range.len() * numbers, 0.0);
-            let cube = Cube { center: level.boxes[number].center, side: level.side };
-            let positions = points.positions.each_ref().map(|x| &x[range.clone()]);
-            interpolate::<K>(operators, cube, positions, grid, values);
-            for (column, out) in columns.iter_mut().enumerate() {
-                for (out, values) in out.iter_mut().zip(values.chunks_exact(numbers)) {
-                    *out += values[column];
+        parts
+            .par_iter_mut()
+            .for_each_init(Vec::new, |values, (leaf, columns)| {
+                let [depth, number] = self.homes[*leaf as usize].map(|at| at as usize);
+                let level = &tree.levels[depth];
+                let targets = tree.leaves[*leaf as usize].targets.clone();
+                let range = targets.start as usize..targets.end as usize;
+                let grid =
+                    &grids.levels[depth][number * len..][..K::POTENTIALS * operators.shape.field()];
+                values.clear();
+                values.resize(range.len() * numbers, 0.0);
+                let cube = Cube {
+                    center: level.boxes[number].center,
+                    side: level.side,
+                };
+                let positions = points.positions.each_ref().map(|x| &x[range.clone()]);
+                interpolate::<K>(operators, cube, positions, grid, values);
+                for (column, out) in columns.iter_mut().enumerate() {
+                    for (out, values) in out.iter_mut().zip(values.chunks_exact(numbers)) {
+                        *out += values[column];
+                    }
                 }
-            }
-        });
+            });
     }
 
     /// The outputs cut into the leaves with targets.
-    fn parts<'a>(&self, tree: &Tree, outputs: &'a mut [Vec<f64>]) -> Vec<(u32, Vec<&'a mut [f64]>)> {
+    fn parts<'a>(
+        &self,
+        tree: &Tree,
+        outputs: &'a mut [Vec<f64>],
+    ) -> Vec<(u32, Vec<&'a mut [f64]>)> {
         let mut leaves: Vec<u32> = (0..tree.leaves.len() as u32).collect();
         leaves.retain(|&leaf| !tree.leaves[leaf as usize].targets.is_empty());
         leaves.sort_unstable_by_key(|&leaf| tree.leaves[leaf as usize].targets.start);
@@ -305,13 +389,29 @@ fn spread<K: Far>(
     };
     let none: [&[f64]; 3] = [&[]; 3];
     match (K::DENSITIES, K::DIPOLES) {
-        (1, false) => gridding::spread::<1, false>(window, cube, positions, [charge(0)], [none], grid),
+        (1, false) => {
+            gridding::spread::<1, false>(window, cube, positions, [charge(0)], [none], grid)
+        }
         (3, false) => {
-            gridding::spread::<3, false>(window, cube, positions, [0, 1, 2].map(charge), [none; 3], grid);
+            gridding::spread::<3, false>(
+                window,
+                cube,
+                positions,
+                [0, 1, 2].map(charge),
+                [none; 3],
+                grid,
+            );
         }
         (4, true) => {
             let fields = [0, 1, 2, 3];
-            gridding::spread::<4, true>(window, cube, positions, fields.map(charge), fields.map(dipole), grid);
+            gridding::spread::<4, true>(
+                window,
+                cube,
+                positions,
+                fields.map(charge),
+                fields.map(dipole),
+                grid,
+            );
         }
         other => unreachable!("no kernel has {other:?}"),
     }
@@ -353,7 +453,11 @@ impl<K: Far> WithIsa for Forward<'_, K> {
 
     #[inline(always)]
     fn with_isa<S: Isa>(self, simd: S) {
-        for (density, waves) in self.densities.chunks_exact_mut(self.transform.waves_len()).enumerate() {
+        for (density, waves) in self
+            .densities
+            .chunks_exact_mut(self.transform.waves_len())
+            .enumerate()
+        {
             let mut grids = [&self.fields[..0]; BATCH];
             for lane in 0..BATCH {
                 // A batch that is not full repeats its last box: nobody reads those lanes.
@@ -361,7 +465,8 @@ impl<K: Far> WithIsa for Forward<'_, K> {
                 let at = number * self.len + density * self.shape.field();
                 grids[lane] = &self.fields[at..][..self.shape.field()];
             }
-            self.transform.forward(simd, grids, self.shape.stride(), waves, self.scratch);
+            self.transform
+                .forward(simd, grids, self.shape.stride(), waves, self.scratch);
         }
     }
 }
@@ -379,7 +484,8 @@ impl WithIsa for Multiply<'_> {
 
     #[inline(always)]
     fn with_isa<S: Isa>(self, simd: S) {
-        self.symbol.apply(simd, self.side, self.densities, self.potentials);
+        self.symbol
+            .apply(simd, self.side, self.densities, self.potentials);
     }
 }
 
@@ -397,7 +503,13 @@ impl WithIsa for Backward<'_, '_> {
 
     #[inline(always)]
     fn with_isa<S: Isa>(self, simd: S) {
-        let Self { transform, waves, grids, stride, scratch } = self;
+        let Self {
+            transform,
+            waves,
+            grids,
+            stride,
+            scratch,
+        } = self;
         transform.backward(simd, waves, grids, stride, Into::Replace, scratch);
     }
 }
@@ -420,7 +532,10 @@ impl WithIsa for Handing<'_> {
     fn with_isa<S: Isa>(self, simd: S) {
         let transfer = &self.operators.transfer;
         let field = self.operators.shape.field();
-        let fields = self.from.chunks_exact(field).zip(self.to.chunks_exact_mut(field));
+        let fields = self
+            .from
+            .chunks_exact(field)
+            .zip(self.to.chunks_exact_mut(field));
         for (from, to) in fields.take(self.fields) {
             if self.up {
                 transfer.up(simd, self.octant, from, to, self.scratch);

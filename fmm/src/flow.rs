@@ -1,6 +1,7 @@
 //! What is summed, and what comes out.
 
 use crate::FmmError;
+use crate::kernel::MOST;
 
 /// The strengths of the sources, one entry per source in each array. All fields are optional:
 /// `Strengths { stokeslets: Some(&forces), ..Default::default() }`. Viscosity is 1.
@@ -70,6 +71,29 @@ pub struct Flow {
 }
 
 impl Flow {
+    /// The numbers of a sum, `at(target, output)`, as a flow; they are in lengths `scale` times the user's.
+    pub(crate) fn assemble(
+        output: Output,
+        targets: usize,
+        scale: f64,
+        at: impl Fn(usize, usize) -> f64,
+    ) -> Self {
+        let slope = |target, output| at(target, output) * scale * scale;
+        let velocity = |target| [0, 1, 2].map(|k| at(target, k) * scale);
+        let mut flow = Self {
+            velocity: (0..targets).map(velocity).collect(),
+            ..Self::default()
+        };
+        if output != Output::Velocity {
+            flow.pressure = (0..targets).map(|target| slope(target, 3)).collect();
+        }
+        if output == Output::Gradient {
+            let gradient = |target| [4, 7, 10].map(|row| [0, 1, 2].map(|k| slope(target, row + k)));
+            flow.gradient = (0..targets).map(gradient).collect();
+        }
+        flow
+    }
+
     /// $\sigma_{ij} = -p\,\delta_{ij} + \partial_j u_i + \partial_i u_j$ at each target; empty if the gradient
     /// was not asked for.
     pub fn stress(&self) -> Vec<[[f64; 3]; 3]> {
@@ -89,23 +113,62 @@ fn stress(gradient: &[[f64; 3]; 3], pressure: f64) -> [[f64; 3]; 3] {
     stress
 }
 
-/// Which kinds of singularity are present.
+/// Which kinds of singularity a sum is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Singularities {
+pub enum Singularities {
+    /// Stokeslets alone.
     Stokeslets,
+    /// Stresslets alone.
     Stresslets,
+    /// Stokeslets and stresslets.
     Both,
+    /// Stokeslets, stresslets, rotlets and sources.
     All,
 }
 
 impl Singularities {
     /// Numbers per source.
-    pub fn count(self) -> usize {
+    pub(crate) fn count(self) -> usize {
         match self {
             Self::Stokeslets => 3,
             Self::Stresslets => 6,
             Self::Both => 9,
             Self::All => 13,
+        }
+    }
+
+    /// Refuses strengths of other kinds.
+    pub(crate) fn admits(self, strengths: &Strengths<'_>) -> Result<(), FmmError> {
+        let kinds = [
+            (
+                strengths.stokeslets.is_some(),
+                self != Self::Stresslets,
+                "Stokeslets",
+            ),
+            (
+                strengths.stresslets.is_some(),
+                self != Self::Stokeslets,
+                "stresslets",
+            ),
+            (strengths.rotlets.is_some(), self == Self::All, "rotlets"),
+            (strengths.fluxes.is_some(), self == Self::All, "sources"),
+        ];
+        match kinds.iter().find(|(given, planned, _)| *given && !planned) {
+            Some((_, _, kind)) => Err(FmmError::Unplanned(kind)),
+            None => Ok(()),
+        }
+    }
+
+    /// The flow of all but the Stokeslets is of one order more in the length: in lengths `scale` times the user's their strengths take
+    /// that factor.
+    pub(crate) fn weigh(self, strength: &mut [f64; MOST], scale: f64) {
+        match self {
+            Self::Stokeslets => {}
+            Self::Stresslets => strength[..3].iter_mut().for_each(|q| *q *= scale),
+            Self::Both | Self::All => {
+                strength[3..6].iter_mut().for_each(|q| *q *= scale);
+                strength[9..].iter_mut().for_each(|q| *q *= scale);
+            }
         }
     }
 }
@@ -142,8 +205,8 @@ impl Strengths<'_> {
     }
 
     /// The numbers of source `index` in the layout of `singularities`, zeros for what is absent.
-    pub(crate) fn of(&self, index: usize, singularities: Singularities) -> [f64; 13] {
-        let mut all = [0.0; 13];
+    pub(crate) fn of(&self, index: usize, singularities: Singularities) -> [f64; MOST] {
+        let mut all = [0.0; MOST];
         if let Some(forces) = self.stokeslets {
             all[..3].copy_from_slice(&forces[index]);
         }

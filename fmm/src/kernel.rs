@@ -4,6 +4,8 @@
 //! residual is the same: only the chain differs. It is kept in the units in which the full chain is
 //! $B_n = r^{1-2n}$, so $\beta_n = (\frac1r \frac{d}{dr})^n B = \kappa_n B_n$ with [`UNITS`] $\kappa_n$.
 
+use crate::far::Far;
+use crate::flow::{Output, Singularities};
 use f64_lanes::{Isa, Lanes, Precision};
 
 mod laplace;
@@ -39,6 +41,37 @@ pub(crate) trait Pair: Copy + Send + Sync + 'static {
         strength: &[f64],
         out: &mut [Lanes<S>; MOST],
     );
+}
+
+/// Work that is compiled for each kernel.
+pub(crate) trait WithKernel {
+    /// What it returns.
+    type Output;
+
+    /// The work.
+    fn run<K: Far>(self) -> Self::Output;
+}
+
+/// Does `work` with the kernel of Stokes flow that is asked for.
+pub(crate) fn with_stokes<W: WithKernel>(
+    singularities: Singularities,
+    output: Output,
+    work: W,
+) -> W::Output {
+    match (singularities, output) {
+        (Singularities::Stokeslets, Output::Velocity) => work.run::<Stokes<3, 3>>(),
+        (Singularities::Stokeslets, Output::Pressure) => work.run::<Stokes<3, 4>>(),
+        (Singularities::Stokeslets, Output::Gradient) => work.run::<Stokes<3, 13>>(),
+        (Singularities::Stresslets, Output::Velocity) => work.run::<Stokes<6, 3>>(),
+        (Singularities::Stresslets, Output::Pressure) => work.run::<Stokes<6, 4>>(),
+        (Singularities::Stresslets, Output::Gradient) => work.run::<Stokes<6, 13>>(),
+        (Singularities::Both, Output::Velocity) => work.run::<Stokes<9, 3>>(),
+        (Singularities::Both, Output::Pressure) => work.run::<Stokes<9, 4>>(),
+        (Singularities::Both, Output::Gradient) => work.run::<Stokes<9, 13>>(),
+        (Singularities::All, Output::Velocity) => work.run::<Stokes<13, 3>>(),
+        (Singularities::All, Output::Pressure) => work.run::<Stokes<13, 4>>(),
+        (Singularities::All, Output::Gradient) => work.run::<Stokes<13, 13>>(),
+    }
 }
 
 /// The radial chain of one register of pairs: of the full kernels if `SINGULAR`, else of their residuals.

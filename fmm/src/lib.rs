@@ -4,6 +4,7 @@ pub mod direct;
 mod error;
 mod far;
 mod far_field;
+mod fast;
 mod flow;
 mod gemm;
 mod gridding;
@@ -25,4 +26,6 @@ mod window;
 #[doc(inline)]
 pub use error::FmmError;
 #[doc(inline)]
-pub use flow::{Flow, Output, Strengths, Stresslets};
+pub use fast::{LaplaceSum, Points, StokesSum};
+#[doc(inline)]
+pub use flow::{Flow, Output, Singularities, Strengths, Stresslets};

@@ -9,12 +9,14 @@ use crate::symbol::Symbol;
 use crate::transfer::{GridShape, Transfer};
 use crate::transform::{AxisWaves, Ball, Transform};
 use crate::translate::Turns;
+use crate::tree;
 use crate::window::Window;
 
 /// Operators of the far field, and the residual's polynomials.
 #[derive(Clone, Debug)]
 pub(crate) struct Operators {
     pub parameters: Parameters,
+    pub costs: Costs,
     pub window: Window,
     pub shape: GridShape,
     /// The whole of the free-space kernel, mollified at half the root's side.
@@ -46,24 +48,59 @@ impl Operators {
             let matrix = window.waves_matrix(&waves);
             let axis = AxisWaves::new(parameters.points, ball.waves, [matrix.even, matrix.odd]);
             let symbol = Symbol::new(&terms, &ball, spacing, radius, biharmonic);
-            Across { transform: Transform { ball, axis }, symbol }
+            Across {
+                transform: Transform { ball, axis },
+                symbol,
+            }
         };
         let level = across(2.0 * PI / 3.0, None, &|k| splitting.difference(k));
-        let root = across(2.0 * PI / ROOT_PERIOD, Some(ROOT_RADIUS), &|k| splitting.free_space(k));
+        let root = across(2.0 * PI / ROOT_PERIOD, Some(ROOT_RADIUS), &|k| {
+            splitting.free_space(k)
+        });
         let transfer = Transfer::new(parameters.points, window.reach(), &window.transfer());
         let needed = K::ORDERS[0]..=K::ORDERS[1];
         let mollified = [1, 2, 3, 4].map(|order| {
-            if needed.contains(&order) { splitting.polynomial(order, parameters.accuracy) } else { Vec::new() }
+            if needed.contains(&order) {
+                splitting.polynomial(order, parameters.accuracy)
+            } else {
+                Vec::new()
+            }
         });
         Self {
-            shape: GridShape { points: parameters.points },
+            shape: GridShape {
+                points: parameters.points,
+            },
             turns: Turns::new(&level.transform.ball),
             root,
             level,
             transfer,
             mollified,
             window,
+            costs: Costs::new::<K>(&parameters),
             parameters,
+        }
+    }
+}
+
+/// What the pieces of a sum take, in nanoseconds on one thread.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Costs {
+    /// A pair of the direct sum.
+    pub direct: f64,
+    pub tree: tree::Costs,
+}
+
+impl Costs {
+    fn new<K: Far>(parameters: &Parameters) -> Self {
+        let _ = parameters;
+        let direct = 0.4;
+        Self {
+            direct,
+            tree: tree::Costs {
+                pair: 1.2,
+                grid: 350_000.0,
+                point: 300.0,
+            },
         }
     }
 }

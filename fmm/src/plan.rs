@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::prelude::*;
 
+use crate::direct::{Problem, records};
 use crate::far::Far;
 use crate::far_field::{Charges, FarField, Grids};
 use crate::kernel::MOST;
@@ -19,6 +20,62 @@ pub(crate) type Strength<'a> = &'a (dyn Fn(usize) -> [f64; MOST] + Sync);
 pub(crate) trait Planned: Send + Sync {
     /// The kernel's numbers, one column each, over the targets in the user's order.
     fn apply(&self, strength: Strength<'_>) -> Vec<Vec<f64>>;
+}
+
+/// Points in the plan's lengths: the largest distance along an axis is between 1 and 2.
+pub(crate) struct Scaled {
+    pub sources: Vec<[f64; 3]>,
+    pub targets: Option<Vec<[f64; 3]>>,
+}
+
+/// The cheaper of the fast and the direct sum over these points.
+pub(crate) fn plan<K: Far>(points: Scaled, operators: Arc<Operators>) -> Box<dyn Planned> {
+    let costs = operators.costs;
+    let targets = points.targets.as_ref().unwrap_or(&points.sources);
+    let direct = points.sources.len() as f64 * targets.len() as f64 * costs.direct;
+    // A root alone never pays.
+    if direct < costs.tree.grid {
+        return Box::new(Directly::<K> {
+            points,
+            operators,
+            kernel: PhantomData,
+        });
+    }
+    let tree = Tree::new(&points.sources, points.targets.as_deref(), &costs.tree);
+    if direct < tree.cost(&costs.tree) {
+        return Box::new(Directly::<K> {
+            points,
+            operators,
+            kernel: PhantomData,
+        });
+    }
+    Box::new(Plan::<K>::new(operators, tree))
+}
+
+/// Sums so small that the direct sum takes less time.
+struct Directly<K> {
+    points: Scaled,
+    operators: Arc<Operators>,
+    kernel: PhantomData<fn() -> K>,
+}
+
+impl<K: Far> Planned for Directly<K> {
+    fn apply(&self, strength: Strength<'_>) -> Vec<Vec<f64>> {
+        let Scaled { sources, targets } = &self.points;
+        let targets = targets.as_ref().unwrap_or(sources);
+        let problem = Problem {
+            records: records(sources, 1.0, K::STRENGTHS, strength),
+            targets: targets.clone(),
+            precision: self.operators.parameters.precision,
+        };
+        let columns = problem.sum::<K>();
+        let column = |output| {
+            (0..targets.len())
+                .map(|target| columns.at(target, output))
+                .collect()
+        };
+        (0..K::OUTPUTS).map(column).collect()
+    }
 }
 
 /// Fast sums of the kernel `K` over one set of points.
@@ -36,7 +93,14 @@ impl<K: Far> Plan<K> {
     pub fn new(operators: Arc<Operators>, tree: Tree) -> Self {
         let near = NearField::new(&tree, &operators.mollified, operators.parameters.precision);
         let far = FarField::new(&tree);
-        Self { operators, tree, near, far, grids: Mutex::default(), kernel: PhantomData }
+        Self {
+            operators,
+            tree,
+            near,
+            far,
+            grids: Mutex::default(),
+            kernel: PhantomData,
+        }
     }
 
     fn targets(&self) -> &SortedPoints {
@@ -49,29 +113,33 @@ impl<K: Far> Plan<K> {
         let columns = if K::DIPOLES { 4 } else { 1 } * K::DENSITIES;
         let mut charges = vec![vec![0.0; count]; columns];
         const BLOCK: usize = 4096;
-        let mut blocks: Vec<Vec<&mut [f64]>> = (0..count.div_ceil(BLOCK)).map(|_| Vec::new()).collect();
+        let mut blocks: Vec<Vec<&mut [f64]>> =
+            (0..count.div_ceil(BLOCK)).map(|_| Vec::new()).collect();
         for column in &mut charges {
             for (block, part) in blocks.iter_mut().zip(column.chunks_mut(BLOCK)) {
                 block.push(part);
             }
         }
-        blocks.par_iter_mut().enumerate().for_each(|(number, block)| {
-            let mut strength = [0.0; MOST];
-            for i in 0..block[0].len() {
-                for (number_of, column) in strengths.iter().enumerate() {
-                    strength[number_of] = column[number * BLOCK + i];
-                }
-                let (charge, dipole) = K::charges(&strength);
-                for density in 0..K::DENSITIES {
-                    block[density][i] = charge[density];
-                    if K::DIPOLES {
-                        for axis in 0..3 {
-                            block[K::DENSITIES + 3 * density + axis][i] = dipole[density][axis];
+        blocks
+            .par_iter_mut()
+            .enumerate()
+            .for_each(|(number, block)| {
+                let mut strength = [0.0; MOST];
+                for i in 0..block[0].len() {
+                    for (number_of, column) in strengths.iter().enumerate() {
+                        strength[number_of] = column[number * BLOCK + i];
+                    }
+                    let (charge, dipole) = K::charges(&strength);
+                    for density in 0..K::DENSITIES {
+                        block[density][i] = charge[density];
+                        if K::DIPOLES {
+                            for axis in 0..3 {
+                                block[K::DENSITIES + 3 * density + axis][i] = dipole[density][axis];
+                            }
                         }
                     }
                 }
-            }
-        });
+            });
         charges
     }
 }
@@ -87,13 +155,23 @@ impl<K: Far> Planned for Plan<K> {
             }
         }
         let charges = self.charges(&strengths);
-        let mut grids = self.grids.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default();
-        self.far.fill::<K>(&self.operators, &self.tree, &charges, &mut grids);
+        let mut grids = self
+            .grids
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .pop()
+            .unwrap_or_default();
+        self.far
+            .fill::<K>(&self.operators, &self.tree, &charges, &mut grids);
         drop(charges);
         let order = &self.targets().order;
         let mut outputs = vec![vec![0.0; order.len()]; K::OUTPUTS];
-        self.far.read::<K>(&self.operators, &self.tree, &grids, &mut outputs);
-        self.grids.lock().unwrap_or_else(PoisonError::into_inner).push(grids);
+        self.far
+            .read::<K>(&self.operators, &self.tree, &grids, &mut outputs);
+        self.grids
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .push(grids);
         self.near.add::<K>(&strengths, &mut outputs);
         drop(strengths);
         let unsorted = outputs.par_iter().map(|sorted| {

@@ -33,7 +33,15 @@ fn charges() {
         let splitting = Splitting::new(operators.parameters.waves);
         let sources = cube(600);
         for costs in [1e9, 20_000.0, 500.0] {
-            let tree = Tree::new(&sources, None, &Costs { pair: 10.0, grid: costs, point: 10.0 });
+            let tree = Tree::new(
+                &sources,
+                None,
+                &Costs {
+                    pair: 10.0,
+                    grid: costs,
+                    point: 10.0,
+                },
+            );
             let boxes: Vec<usize> = tree.levels.iter().map(|l| l.boxes.len()).collect();
             let far = FarField::new(&tree);
             let mut grids = Grids::default();
@@ -49,7 +57,9 @@ fn charges() {
                     let mut exact = [0.0; 4];
                     let mut found = [0, 1, 2, 3].map(|k| out[k][target as usize]);
                     for source in 0..600 {
-                        let d: Vec<f64> = (0..3).map(|a| x(target as usize)[a] - x(source)[a]).collect();
+                        let d: Vec<f64> = (0..3)
+                            .map(|a| x(target as usize)[a] - x(source)[a])
+                            .collect();
                         let r2: f64 = d.iter().map(|d| d * d).sum();
                         if r2 > 0.0 {
                             let r = r2.sqrt();
@@ -60,14 +70,17 @@ fn charges() {
                     }
                     for near in &leaf.near {
                         for source in near.sources.clone() {
-                            let d: Vec<f64> = (0..3).map(|a| x(target as usize)[a] - x(source as usize)[a]).collect();
+                            let d: Vec<f64> = (0..3)
+                                .map(|a| x(target as usize)[a] - x(source as usize)[a])
+                                .collect();
                             let r2: f64 = d.iter().map(|d| d * d).sum();
                             let [b1, b2, b3, _] = residual(&splitting, r2, near.reach);
                             let q = charges[0][source as usize];
                             if r2 > 0.0 || b1 != 0.0 {
                                 let (b2, b3) = if r2 > 0.0 { (b2, b3) } else { (b2, b3) };
                                 found[0] += q * (3.0 * b1 + r2 * b2);
-                                (0..3).for_each(|a| found[a + 1] += q * d[a] * (5.0 * b2 + r2 * b3));
+                                (0..3)
+                                    .for_each(|a| found[a + 1] += q * d[a] * (5.0 * b2 + r2 * b3));
                             }
                         }
                     }
@@ -78,16 +91,36 @@ fn charges() {
                 }
             }
             let errors = [0, 1, 2, 3].map(|k| (worst[k] / size[k]).sqrt());
-            println!("waves {} boxes {boxes:?}: {:?}", operators.parameters.waves, errors.map(|e| format!("{e:.1e}")));
+            println!(
+                "waves {} boxes {boxes:?}: {:?}",
+                operators.parameters.waves,
+                errors.map(|e| format!("{e:.1e}"))
+            );
             assert!(errors[0] < bound);
         }
     }
 }
 
 fn sets() -> Vec<(Parameters, f64)> {
-    [(6, 16, 10, 1e-3), (8, 24, 17, 1e-6), (12, 36, 24, 1e-9), (16, 48, 32, 1e-12)]
-        .map(|(width, points, waves, accuracy)| (Parameters { width, points, waves, accuracy, precision: f64_lanes::Precision::Full }, accuracy))
-        .to_vec()
+    [
+        (6, 16, 10, 1e-3),
+        (8, 24, 17, 1e-6),
+        (12, 36, 24, 1e-9),
+        (16, 48, 32, 1e-12),
+    ]
+    .map(|(width, points, waves, accuracy)| {
+        (
+            Parameters {
+                width,
+                points,
+                waves,
+                accuracy,
+                precision: f64_lanes::Precision::Full,
+            },
+            accuracy,
+        )
+    })
+    .to_vec()
 }
 
 #[test]
@@ -96,7 +129,15 @@ fn speed() {
     for (parameters, _) in sets() {
         let operators = Operators::new::<Stokes<3, 3>>(parameters);
         let sources = cube(100_000);
-        let tree = Tree::new(&sources, None, &Costs { pair: 1.0, grid: 300_000.0, point: 10.0 });
+        let tree = Tree::new(
+            &sources,
+            None,
+            &Costs {
+                pair: 1.0,
+                grid: 300_000.0,
+                point: 10.0,
+            },
+        );
         let boxes: Vec<usize> = tree.levels.iter().map(|l| l.boxes.len()).collect();
         let far = FarField::new(&tree);
         let mut grids = Grids::default();
@@ -104,7 +145,11 @@ fn speed() {
         for _ in 0..2 {
             let start = std::time::Instant::now();
             far.fill::<Stokes<3, 3>>(&operators, &tree, &charges, &mut grids);
-            println!("waves {} boxes {boxes:?}: {:?}", operators.parameters.waves, start.elapsed());
+            println!(
+                "waves {} boxes {boxes:?}: {:?}",
+                operators.parameters.waves,
+                start.elapsed()
+            );
         }
     }
 }

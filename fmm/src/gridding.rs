@@ -109,11 +109,11 @@ impl<'a> Placing<'a> {
         self.grid_points * self.grid_points * self.row_len
     }
 
-    /// Where the first row of a stencil begins at its grid point number `x` along that axis.
+    /// The rows of a stencil at its grid point number `x` along that axis.
     #[inline(always)]
-    fn first_row(&self, stencil: &Stencil, x: usize) -> usize {
-        let [x0, y0, z0] = stencil.start;
-        ((x0 + x) * self.grid_points + y0) * self.row_len + z0
+    fn rows(&self, stencil: &Stencil, x: usize) -> Range<usize> {
+        let start = ((stencil.start[0] + x) * self.grid_points + stencil.start[1]) * self.row_len;
+        start..start + self.width * self.row_len
     }
 
     /// The stencils of a block of the points.
@@ -347,6 +347,7 @@ fn spread_point<S: Isa, const DIPOLES: bool, const N: usize>(
     dipole: [f64; 3],
     grid: &mut [f64],
 ) {
+    let z = stencil.start[2];
     let value = Row::<S, N>::load(simd, &stencil.z.value);
     let slope = Row::<S, N>::load(simd, &stencil.z.slope);
     for x in 0..placing.width {
@@ -361,12 +362,13 @@ fn spread_point<S: Isa, const DIPOLES: bool, const N: usize>(
         } else {
             by_value.add(Lanes::splat(simd, charge * wx), &value);
         }
-        let rows = grid[placing.first_row(stencil, x)..].chunks_mut(placing.row_len);
-        for (y, row) in (0..placing.width).zip(rows) {
+        let rows = grid[placing.rows(stencil, x)].chunks_exact_mut(placing.row_len);
+        for ((row, wy), dy) in rows.zip(&stencil.y.value).zip(&stencil.y.slope) {
+            let row = &mut row[z..z + N * PADDING];
             let mut sum = Row::<S, N>::load(simd, row);
-            sum.add(Lanes::splat(simd, stencil.y.value[y]), &by_value);
+            sum.add(Lanes::splat(simd, *wy), &by_value);
             if DIPOLES {
-                sum.add(Lanes::splat(simd, stencil.y.slope[y]), &by_slope);
+                sum.add(Lanes::splat(simd, *dy), &by_slope);
             }
             sum.store(row);
         }
@@ -422,17 +424,18 @@ fn interpolate_point<S: Isa, const GRADIENTS: bool, const N: usize>(
     stencil: &Stencil,
     grid: &[f64],
 ) -> [f64; 4] {
+    let z = stencil.start[2];
     let mut sum = Row::<S, N>::zero(simd);
     let (mut slope_x, mut slope_y) = (sum, sum);
     for x in 0..placing.width {
         let mut by_value = Row::<S, N>::zero(simd);
         let mut by_slope = Row::<S, N>::zero(simd);
-        let rows = grid[placing.first_row(stencil, x)..].chunks(placing.row_len);
-        for (y, row) in (0..placing.width).zip(rows) {
-            let row = Row::<S, N>::load(simd, row);
-            by_value.add(Lanes::splat(simd, stencil.y.value[y]), &row);
+        let rows = grid[placing.rows(stencil, x)].chunks_exact(placing.row_len);
+        for ((row, wy), dy) in rows.zip(&stencil.y.value).zip(&stencil.y.slope) {
+            let row = Row::<S, N>::load(simd, &row[z..z + N * PADDING]);
+            by_value.add(Lanes::splat(simd, *wy), &row);
             if GRADIENTS {
-                by_slope.add(Lanes::splat(simd, stencil.y.slope[y]), &row);
+                by_slope.add(Lanes::splat(simd, *dy), &row);
             }
         }
         let wx = Lanes::splat(simd, stencil.x.value[x]);

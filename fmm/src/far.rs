@@ -16,6 +16,8 @@ pub(crate) trait Far: Pair {
     const POTENTIALS: usize;
     const DIPOLES: bool;
     const GRADIENTS: bool;
+    /// Derivatives between what Stokeslets drive and the outputs: one for dipoles, one for pressures and gradients.
+    const DERIVATIVES: usize;
 
     /// The kernel as products among plane waves.
     fn symbol() -> Vec<Term>;
@@ -29,6 +31,7 @@ impl<const STRENGTHS: usize, const OUTPUTS: usize> Far for Stokes<STRENGTHS, OUT
     const POTENTIALS: usize = if OUTPUTS == 3 { 3 } else { 4 };
     const DIPOLES: bool = STRENGTHS != 3;
     const GRADIENTS: bool = OUTPUTS == 13;
+    const DERIVATIVES: usize = (STRENGTHS != 3) as usize + (OUTPUTS != 3) as usize;
 
     fn symbol() -> Vec<Term> {
         symbol::stokes(Self::DENSITIES == 4, Self::POTENTIALS == 4)
@@ -71,6 +74,7 @@ impl<const OUTPUTS: usize> Far for Laplace<OUTPUTS> {
     const POTENTIALS: usize = 1;
     const DIPOLES: bool = false;
     const GRADIENTS: bool = OUTPUTS == 4;
+    const DERIVATIVES: usize = (OUTPUTS == 4) as usize;
 
     fn symbol() -> Vec<Term> {
         symbol::laplace()

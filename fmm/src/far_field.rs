@@ -98,18 +98,12 @@ impl FarField {
             grids.resize(level.boxes.len() * len, 0.0);
         }
         for depth in (0..tree.levels.len()).rev() {
-            let t = std::time::Instant::now();
             self.up::<K>(operators, tree, charges, grids, depth, len);
-            eprintln!("up {depth} {:?}", t.elapsed());
         }
         for depth in 0..tree.levels.len() {
-            let t = std::time::Instant::now();
             self.across::<K>(operators, tree, grids, depth, len);
-            eprintln!("across {depth} {:?}", t.elapsed());
-            let t = std::time::Instant::now();
             if depth > 0 {
                 self.down::<K>(operators, tree, grids, depth, len);
-                eprintln!("down {depth} {:?}", t.elapsed());
             }
         }
     }
@@ -191,7 +185,6 @@ impl FarField {
         if plan.sources.is_empty() || plan.targets.is_empty() {
             return;
         }
-        let tt = std::time::Instant::now();
         let Grids {
             levels,
             waves,
@@ -237,9 +230,7 @@ impl FarField {
             .map(|(grid, _)| grid)
             .collect();
         let batches = plan.targets.len().div_ceil(BATCH);
-        eprintln!("  forward {:?}", tt.elapsed());
         for potential in 0..K::POTENTIALS {
-            let tt = std::time::Instant::now();
             let field = |batch: usize| -> &[f64] {
                 &waves[batch * batch_len + potential * transform.waves_len()..]
                     [..transform.waves_len()]
@@ -247,8 +238,6 @@ impl FarField {
             if depth > 0 {
                 operators.turns.translate(&plan.sweeps, field, translated);
             }
-            eprintln!("  translate {:?}", tt.elapsed());
-            let tt = std::time::Instant::now();
             let translated = &*translated;
             boxes.par_chunks_mut(BATCH).enumerate().for_each_init(
                 || (transform.scratch(), vec![0.0; transform.waves_len()]),
@@ -272,7 +261,6 @@ impl FarField {
                     });
                 },
             );
-            eprintln!("  backward {:?}", tt.elapsed());
         }
     }
 

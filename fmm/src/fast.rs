@@ -7,7 +7,6 @@ use crate::far::Far;
 use crate::flow::{Flow, Output, Singularities, Strengths, check, check_positions};
 use crate::kernel::{Laplace, MOST, WithKernel, with_stokes};
 use crate::operators::Operators;
-use crate::parameters::Parameters;
 use crate::plan::{Planned, Scaled, plan};
 
 /// Where the sources are, and where their sum is wanted.
@@ -68,12 +67,12 @@ impl<'a> Points<'a> {
 }
 
 /// Makes the operators of a kernel.
-struct MakeOperators(Parameters);
+struct MakeOperators(f64);
 
 impl WithKernel for MakeOperators {
-    type Output = Operators;
+    type Output = Result<Operators, FmmError>;
 
-    fn run<K: Far>(self) -> Operators {
+    fn run<K: Far>(self) -> Self::Output {
         Operators::new::<K>(self.0)
     }
 }
@@ -116,12 +115,11 @@ impl StokesSum {
         output: Output,
         tolerance: f64,
     ) -> Result<Self, FmmError> {
-        let parameters = Parameters::new(tolerance)?;
         let operators = Arc::new(with_stokes(
             singularities,
             output,
-            MakeOperators(parameters),
-        ));
+            MakeOperators(tolerance),
+        )?);
         Self::with_operators(points, singularities, output, tolerance, operators)
     }
 
@@ -206,11 +204,10 @@ impl LaplaceSum {
     ///
     /// As for [`StokesSum::new`].
     pub fn new(points: Points<'_>, gradient: bool, tolerance: f64) -> Result<Self, FmmError> {
-        let parameters = Parameters::new(tolerance)?;
         let operators = if gradient {
-            Operators::new::<Laplace<4>>(parameters)
+            Operators::new::<Laplace<4>>(tolerance)?
         } else {
-            Operators::new::<Laplace<1>>(parameters)
+            Operators::new::<Laplace<1>>(tolerance)?
         };
         Self::with_operators(points, gradient, Arc::new(operators))
     }

@@ -3,6 +3,8 @@
 //! A grid is a buffer of `D` densities one after the other, each $g \times g$ rows `[x][y]` of `padded(g)` numbers along $z$. Buffers
 //! that start at a multiple of 64 bytes are the fastest.
 
+use std::ops::Range;
+
 use f64_lanes::{Isa, Lanes, PADDING, WithIsa, dispatch, padded};
 
 use crate::window::Window;
@@ -69,6 +71,8 @@ struct Placing<'a> {
     stride: usize,
     width: usize,
     grid_points: usize,
+    /// Of one row along z, padding included.
+    row_len: usize,
     center: [f64; 3],
     /// Grid spacings per unit length.
     scale: f64,
@@ -83,6 +87,7 @@ impl<'a> Placing<'a> {
             stride: values.stride,
             width: window.width(),
             grid_points: window.points(),
+            row_len: padded(window.points()),
             center: cube.center,
             scale: 1.0 / (window.spacing() * cube.side),
         }
@@ -98,10 +103,32 @@ impl<'a> Placing<'a> {
         (start as usize, 2.0 * (start - from) - 1.0)
     }
 
-    /// Where density number `d` has its row along z at grid points `x`, `y`.
+    /// Numbers in the grid of one density.
     #[inline(always)]
-    fn row(&self, d: usize, x: usize, y: usize) -> usize {
-        ((d * self.grid_points + x) * self.grid_points + y) * padded(self.grid_points)
+    fn density_len(&self) -> usize {
+        self.grid_points * self.grid_points * self.row_len
+    }
+
+    /// The rows of a stencil at its grid point number `x` along that axis.
+    #[inline(always)]
+    fn rows(&self, stencil: &Stencil, x: usize) -> Range<usize> {
+        let start = ((stencil.start[0] + x) * self.grid_points + stencil.start[1]) * self.row_len;
+        start..start + self.width * self.row_len
+    }
+
+    /// The stencils of a block of the points.
+    #[inline(always)]
+    fn place<S: Isa, const SLOPES: bool>(
+        &self,
+        simd: S,
+        stencils: &mut [Stencil; BLOCK],
+        points: [&[f64]; 3],
+        block: Range<usize>,
+    ) {
+        for (stencil, i) in stencils.iter_mut().zip(block) {
+            let point = [points[0][i], points[1][i], points[2][i]];
+            stencil.place::<S, SLOPES>(simd, self, point);
+        }
     }
 }
 
@@ -260,6 +287,9 @@ impl<S: Isa, const N: usize> Row<S, N> {
     }
 }
 
+/// Points whose stencils are made before they are used, density after density: what one density takes of a grid stays in the cache.
+const BLOCK: usize = 8;
+
 struct Spread<'a, const D: usize, const DIPOLES: bool> {
     placing: Placing<'a>,
     points: [&'a [f64]; 3],
@@ -273,83 +303,74 @@ impl<const D: usize, const DIPOLES: bool> WithIsa for Spread<'_, D, DIPOLES> {
 
     #[inline(always)]
     fn with_isa<S: Isa>(self, simd: S) {
-        let mut stencil = Stencil::new();
-        for i in 0..self.points[0].len() {
-            let point = self.points.map(|axis| axis[i]);
-            stencil.place::<S, DIPOLES>(simd, &self.placing, point);
-            let charges = self.charges.map(|charge| charge[i]);
-            // The window goes up with the distance to a grid point as it goes down with the place of its own point.
-            let dipoles = if DIPOLES {
-                self.dipoles.map(|dipole| dipole.map(|axis| -axis[i]))
-            } else {
-                [[0.0; 3]; D]
-            };
-            match stencil.registers {
-                1 => spread_point::<S, D, DIPOLES, 1>(
-                    simd,
-                    &self.placing,
-                    &stencil,
-                    charges,
-                    dipoles,
-                    self.grid,
-                ),
-                2 => spread_point::<S, D, DIPOLES, 2>(
-                    simd,
-                    &self.placing,
-                    &stencil,
-                    charges,
-                    dipoles,
-                    self.grid,
-                ),
-                _ => spread_point::<S, D, DIPOLES, 3>(
-                    simd,
-                    &self.placing,
-                    &stencil,
-                    charges,
-                    dipoles,
-                    self.grid,
-                ),
+        let mut stencils = [const { Stencil::new() }; BLOCK];
+        let count = self.points[0].len();
+        for first in (0..count).step_by(BLOCK) {
+            let block = first..count.min(first + BLOCK);
+            self.placing
+                .place::<S, DIPOLES>(simd, &mut stencils, self.points, block.clone());
+            let grids = self.grid.chunks_exact_mut(self.placing.density_len());
+            for (d, grid) in (0..D).zip(grids) {
+                for (stencil, i) in stencils.iter().zip(block.clone()) {
+                    let charge = self.charges[d][i];
+                    // The window rises with the grid point as it falls with the place of its own point.
+                    let dipole = if DIPOLES {
+                        self.dipoles[d].map(|axis| -axis[i])
+                    } else {
+                        [0.0; 3]
+                    };
+                    let placing = &self.placing;
+                    match stencil.registers {
+                        1 => spread_point::<S, DIPOLES, 1>(
+                            simd, placing, stencil, charge, dipole, grid,
+                        ),
+                        2 => spread_point::<S, DIPOLES, 2>(
+                            simd, placing, stencil, charge, dipole, grid,
+                        ),
+                        _ => spread_point::<S, DIPOLES, 3>(
+                            simd, placing, stencil, charge, dipole, grid,
+                        ),
+                    }
+                }
             }
         }
     }
 }
 
-/// Adds one point to the grid.
+/// Adds one point to the grid of one density.
 #[inline(always)]
-fn spread_point<S: Isa, const D: usize, const DIPOLES: bool, const N: usize>(
+fn spread_point<S: Isa, const DIPOLES: bool, const N: usize>(
     simd: S,
     placing: &Placing<'_>,
     stencil: &Stencil,
-    charges: [f64; D],
-    dipoles: [[f64; 3]; D],
+    charge: f64,
+    dipole: [f64; 3],
     grid: &mut [f64],
 ) {
-    let [x0, y0, z0] = stencil.start;
+    let z = stencil.start[2];
     let value = Row::<S, N>::load(simd, &stencil.z.value);
     let slope = Row::<S, N>::load(simd, &stencil.z.slope);
     for x in 0..placing.width {
         let (wx, dx) = (stencil.x.value[x], stencil.x.slope[x]);
-        for d in 0..D {
-            let along_y = Lanes::splat(
-                simd,
-                charges[d] * wx + if DIPOLES { dipoles[d][0] * dx } else { 0.0 },
-            );
-            let slope_y = Lanes::splat(simd, dipoles[d][1] * wx);
-            let slope_z = Lanes::splat(simd, dipoles[d][2] * wx);
-            let start = placing.row(d, x0 + x, y0) + z0;
-            let rows = grid[start..].chunks_mut(padded(placing.grid_points));
-            for (y, row) in (0..placing.width).zip(rows) {
-                let wy = Lanes::splat(simd, stencil.y.value[y]);
-                let mut sum = Row::<S, N>::load(simd, row);
-                if DIPOLES {
-                    let dy = Lanes::splat(simd, stencil.y.slope[y]);
-                    sum.add(along_y.mul_add(wy, slope_y * dy), &value);
-                    sum.add(slope_z * wy, &slope);
-                } else {
-                    sum.add(along_y * wy, &value);
-                }
-                sum.store(row);
+        // What the window along y multiplies, and what its slope does.
+        let mut by_value = Row::<S, N>::zero(simd);
+        let mut by_slope = Row::<S, N>::zero(simd);
+        if DIPOLES {
+            by_value.add(Lanes::splat(simd, charge * wx + dipole[0] * dx), &value);
+            by_value.add(Lanes::splat(simd, dipole[2] * wx), &slope);
+            by_slope.add(Lanes::splat(simd, dipole[1] * wx), &value);
+        } else {
+            by_value.add(Lanes::splat(simd, charge * wx), &value);
+        }
+        let rows = grid[placing.rows(stencil, x)].chunks_exact_mut(placing.row_len);
+        for ((row, wy), dy) in rows.zip(&stencil.y.value).zip(&stencil.y.slope) {
+            let row = &mut row[z..z + N * PADDING];
+            let mut sum = Row::<S, N>::load(simd, row);
+            sum.add(Lanes::splat(simd, *wy), &by_value);
+            if DIPOLES {
+                sum.add(Lanes::splat(simd, *dy), &by_slope);
             }
+            sum.store(row);
         }
     }
 }
@@ -367,113 +388,71 @@ impl<const D: usize, const GRADIENTS: bool> WithIsa for Interpolate<'_, D, GRADI
     #[inline(always)]
     fn with_isa<S: Isa>(self, simd: S) {
         let numbers = if GRADIENTS { 4 * D } else { D };
-        let mut stencil = Stencil::new();
-        for (i, values) in self.values.chunks_exact_mut(numbers).enumerate() {
-            let point = self.points.map(|axis| axis[i]);
-            stencil.place::<S, GRADIENTS>(simd, &self.placing, point);
-            match stencil.registers {
-                1 => interpolate_point::<S, D, GRADIENTS, 1>(
-                    simd,
-                    &self.placing,
-                    &stencil,
-                    self.grid,
-                    values,
-                ),
-                2 => interpolate_point::<S, D, GRADIENTS, 2>(
-                    simd,
-                    &self.placing,
-                    &stencil,
-                    self.grid,
-                    values,
-                ),
-                _ => interpolate_point::<S, D, GRADIENTS, 3>(
-                    simd,
-                    &self.placing,
-                    &stencil,
-                    self.grid,
-                    values,
-                ),
+        let mut stencils = [const { Stencil::new() }; BLOCK];
+        let count = self.points[0].len();
+        for (first, values) in (0..count)
+            .step_by(BLOCK)
+            .zip(self.values.chunks_mut(BLOCK * numbers))
+        {
+            let block = first..count.min(first + BLOCK);
+            self.placing
+                .place::<S, GRADIENTS>(simd, &mut stencils, self.points, block);
+            let grids = self.grid.chunks_exact(self.placing.density_len());
+            for (d, grid) in (0..D).zip(grids) {
+                for (stencil, values) in stencils.iter().zip(values.chunks_exact_mut(numbers)) {
+                    let placing = &self.placing;
+                    let found = match stencil.registers {
+                        1 => interpolate_point::<S, GRADIENTS, 1>(simd, placing, stencil, grid),
+                        2 => interpolate_point::<S, GRADIENTS, 2>(simd, placing, stencil, grid),
+                        _ => interpolate_point::<S, GRADIENTS, 3>(simd, placing, stencil, grid),
+                    };
+                    values[d] = found[0];
+                    if GRADIENTS {
+                        values[D + 3 * d..][..3].copy_from_slice(&found[1..]);
+                    }
+                }
             }
         }
     }
 }
 
-/// The grids at one point. With gradients one after the other, so that the sums stay in registers.
+/// The grid of one density at one point, and its derivatives.
 #[inline(always)]
-fn interpolate_point<S: Isa, const D: usize, const GRADIENTS: bool, const N: usize>(
+fn interpolate_point<S: Isa, const GRADIENTS: bool, const N: usize>(
     simd: S,
     placing: &Placing<'_>,
     stencil: &Stencil,
     grid: &[f64],
-    values: &mut [f64],
-) {
+) -> [f64; 4] {
+    let z = stencil.start[2];
+    let mut sum = Row::<S, N>::zero(simd);
+    let (mut slope_x, mut slope_y) = (sum, sum);
+    for x in 0..placing.width {
+        let mut by_value = Row::<S, N>::zero(simd);
+        let mut by_slope = Row::<S, N>::zero(simd);
+        let rows = grid[placing.rows(stencil, x)].chunks_exact(placing.row_len);
+        for ((row, wy), dy) in rows.zip(&stencil.y.value).zip(&stencil.y.slope) {
+            let row = Row::<S, N>::load(simd, &row[z..z + N * PADDING]);
+            by_value.add(Lanes::splat(simd, *wy), &row);
+            if GRADIENTS {
+                by_slope.add(Lanes::splat(simd, *dy), &row);
+            }
+        }
+        let wx = Lanes::splat(simd, stencil.x.value[x]);
+        sum.add(wx, &by_value);
+        if GRADIENTS {
+            slope_x.add(Lanes::splat(simd, stencil.x.slope[x]), &by_value);
+            slope_y.add(wx, &by_slope);
+        }
+    }
     let value = Row::<S, N>::load(simd, &stencil.z.value);
     if GRADIENTS {
         let slope = Row::<S, N>::load(simd, &stencil.z.slope);
-        for d in 0..D {
-            let sums = gradient_rows::<S, N>(simd, placing, stencil, grid, d);
-            values[d] = sums[0].dot(&value);
-            values[D + 3 * d] = sums[1].dot(&value);
-            values[D + 3 * d + 1] = sums[2].dot(&value);
-            values[D + 3 * d + 2] = sums[0].dot(&slope);
-        }
+        let gradient = [slope_x.dot(&value), slope_y.dot(&value), sum.dot(&slope)];
+        [sum.dot(&value), gradient[0], gradient[1], gradient[2]]
     } else {
-        let sums = value_rows::<S, D, N>(simd, placing, stencil, grid);
-        for d in 0..D {
-            values[d] = sums[d].dot(&value);
-        }
+        [sum.dot(&value), 0.0, 0.0, 0.0]
     }
-}
-
-/// Rows of all densities, weighted along x and y.
-#[inline(always)]
-fn value_rows<S: Isa, const D: usize, const N: usize>(
-    simd: S,
-    placing: &Placing<'_>,
-    stencil: &Stencil,
-    grid: &[f64],
-) -> [Row<S, N>; D] {
-    let [x0, y0, z0] = stencil.start;
-    let mut sums = [Row::zero(simd); D];
-    for x in 0..placing.width {
-        let wx = Lanes::splat(simd, stencil.x.value[x]);
-        for y in 0..placing.width {
-            let weight = wx * stencil.y.value[y];
-            for d in 0..D {
-                let start = placing.row(d, x0 + x, y0 + y) + z0;
-                sums[d].add(weight, &Row::load(simd, &grid[start..]));
-            }
-        }
-    }
-    sums
-}
-
-/// Rows of density `d` weighted along x and y: by the window, and by its slope along x and along y.
-#[inline(always)]
-fn gradient_rows<S: Isa, const N: usize>(
-    simd: S,
-    placing: &Placing<'_>,
-    stencil: &Stencil,
-    grid: &[f64],
-    d: usize,
-) -> [Row<S, N>; 3] {
-    let [x0, y0, z0] = stencil.start;
-    let mut sums = [Row::zero(simd); 3];
-    for x in 0..placing.width {
-        let wx = Lanes::splat(simd, stencil.x.value[x]);
-        let dx = Lanes::splat(simd, stencil.x.slope[x]);
-        let start = placing.row(d, x0 + x, y0) + z0;
-        let rows = grid[start..].chunks(padded(placing.grid_points));
-        for (y, row) in (0..placing.width).zip(rows) {
-            let row = Row::load(simd, row);
-            let wy = Lanes::splat(simd, stencil.y.value[y]);
-            let dy = Lanes::splat(simd, stencil.y.slope[y]);
-            sums[0].add(wx * wy, &row);
-            sums[1].add(dx * wy, &row);
-            sums[2].add(wx * dy, &row);
-        }
-    }
-    sums
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use crate::error::FmmError;
 use crate::far::Far;
 use crate::parameters::Parameters;
 use crate::splitting::{ROOT_PERIOD, ROOT_RADIUS, Splitting};
@@ -37,7 +38,20 @@ pub(crate) struct Across {
 }
 
 impl Operators {
-    pub fn new<K: Far>(parameters: Parameters) -> Self {
+    /// # Errors
+    ///
+    /// Tolerances outside of 1e-12 to 1e-1.
+    pub fn new<K: Far>(tolerance: f64) -> Result<Self, FmmError> {
+        if !(1e-12..=1e-1).contains(&tolerance) {
+            return Err(FmmError::Tolerance(tolerance));
+        }
+        Ok(Self::with_parameters::<K>(Parameters::for_tolerance(
+            tolerance,
+            K::DERIVATIVES,
+        )))
+    }
+
+    pub fn with_parameters<K: Far>(parameters: Parameters) -> Self {
         let splitting = Splitting::new(parameters.waves);
         let window = Window::new(parameters.width, parameters.points, parameters.waves);
         let terms = K::symbol();

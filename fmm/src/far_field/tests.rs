@@ -29,7 +29,7 @@ fn cube(count: usize) -> Vec<[f64; 3]> {
 #[test]
 fn charges() {
     for (parameters, bound) in sets() {
-        let operators = Operators::new::<Laplace<4>>(parameters);
+        let operators = Operators::with_parameters::<Laplace<4>>(parameters);
         let splitting = Splitting::new(operators.parameters.waves);
         let sources = cube(600);
         for costs in [1e9, 20_000.0, 500.0] {
@@ -127,7 +127,7 @@ fn sets() -> Vec<(Parameters, f64)> {
 #[ignore = "timing"]
 fn speed() {
     for (parameters, _) in sets() {
-        let operators = Operators::new::<Stokes<3, 3>>(parameters);
+        let operators = Operators::with_parameters::<Stokes<3, 3>>(parameters);
         let sources = cube(100_000);
         let tree = Tree::new(
             &sources,

@@ -17,8 +17,6 @@ use crate::tree::{SortedPoints, Tree};
 const TILE: usize = PADDING;
 /// Sources that share the load of a polynomial's coefficients.
 const TOGETHER: usize = 2;
-/// Sources listed before they are summed.
-const LIST: usize = 1024;
 /// Place in a tile that no point holds.
 const VACANT: u32 = u32::MAX;
 
@@ -51,7 +49,7 @@ struct Tiles {
     points: Vec<u32>,
     /// Coordinates, place by place; infinite where vacant.
     positions: [Vec<f64>; 3],
-    /// Bounding boxes, tile by tile.
+    /// Bounding boxes, tile by tile; eight more at infinity, so that eight can be read from any tile on.
     low: [Vec<f64>; 3],
     high: [Vec<f64>; 3],
 }
@@ -69,15 +67,18 @@ impl Tiles {
             .collect();
         let mut tiles = Self::default();
         let mut starts = vec![0];
-        for tile in groups.iter().map(|group| group.chunks(TILE)) {
-            tile.for_each(|tile| tiles.push(tile, points));
+        for group in &groups {
+            group.chunks(TILE).for_each(|tile| tiles.push(tile, points));
             starts.push(tiles.count());
+        }
+        for bounds in tiles.low.iter_mut().chain(&mut tiles.high) {
+            bounds.extend([f64::INFINITY; TILE]);
         }
         (tiles, starts)
     }
 
     fn count(&self) -> usize {
-        self.low[0].len()
+        self.points.len() / TILE
     }
 
     fn push(&mut self, tile: &[u32], points: &SortedPoints) {
@@ -191,12 +192,13 @@ impl NearField {
         let mut sums = vec![0.0; tiles * P::OUTPUTS * TILE];
         sums.par_chunks_mut(P::OUTPUTS * TILE)
             .enumerate()
-            .for_each(|(tile, sums)| {
+            .for_each_init(List::default, |list, (tile, sums)| {
                 dispatch(TileSum::<P> {
                     field: self,
                     records: &records,
                     polynomials: &polynomials,
                     tile,
+                    list,
                     sums,
                     pair: PhantomData,
                 });
@@ -229,7 +231,7 @@ impl NearField {
             .for_each(|(place, record)| {
                 if place == places {
                     (0..3).for_each(|axis| {
-                        record[axis] = self.sources.low[axis].first().copied().unwrap_or(0.0)
+                        record[axis] = self.sources.positions[axis].first().copied().unwrap_or(0.0)
                     });
                 } else if self.sources.points[place] != VACANT {
                     let point = self.sources.points[place] as usize;
@@ -242,10 +244,16 @@ impl NearField {
         records
     }
 
-    /// For each reach $L$ the coefficients of $L^{1-2n} b_n$ for the orders $n$ from first to last, side by side.
+    /// For each reach $L$ the coefficients of $L^{1-2n} b_n$ for the orders $n$ from first to last, side by side, an
+    /// even number of each.
     fn polynomials(&self, [first, last]: [usize; 2]) -> Vec<Vec<f64>> {
         let orders = &self.chain[first - 1..last];
-        let terms = orders.iter().map(Vec::len).max().unwrap_or(0);
+        let terms = orders
+            .iter()
+            .map(Vec::len)
+            .max()
+            .unwrap_or(0)
+            .next_multiple_of(2);
         let interleaved = |reach: &f64| {
             let mut coefficients = Vec::with_capacity(terms * orders.len());
             for term in 0..terms {
@@ -278,8 +286,8 @@ struct Bounds {
 impl Bounds {
     /// Squares of the distances from the box of eight boxes `low` to `high`; of points where the two are the same.
     #[inline(always)]
-    fn distances(&self, low: [&[f64]; 3], high: [&[f64]; 3], squares: &mut [f64; TILE]) {
-        *squares = [0.0; TILE];
+    fn distances(&self, low: [&[f64]; 3], high: [&[f64]; 3]) -> [f64; TILE] {
+        let mut squares = [0.0; TILE];
         for axis in 0..3 {
             let (low, high) = (&low[axis][..TILE], &high[axis][..TILE]);
             for i in 0..TILE {
@@ -289,7 +297,16 @@ impl Bounds {
                 squares[i] += gap * gap;
             }
         }
+        squares
     }
+}
+
+/// Sources within reach of a tile of targets.
+#[derive(Default)]
+struct List {
+    places: Vec<u32>,
+    /// Reaches, and where in the list the sources of each end.
+    ends: Vec<(usize, usize)>,
 }
 
 /// All that one tile of targets sees.
@@ -298,14 +315,9 @@ struct TileSum<'a, P> {
     records: &'a [f64],
     polynomials: &'a [Vec<f64>],
     tile: usize,
+    list: &'a mut List,
     sums: &'a mut [f64],
     pair: PhantomData<P>,
-}
-
-/// Sources picked for a tile of targets.
-struct List {
-    places: [u32; LIST + TILE],
-    count: usize,
 }
 
 impl<P: Pair> WithIsa for TileSum<'_, P> {
@@ -313,31 +325,14 @@ impl<P: Pair> WithIsa for TileSum<'_, P> {
 
     #[inline(always)]
     fn with_isa<S: Isa>(mut self, simd: S) {
-        let field = self.field;
-        let bounds = field.bounds(self.tile);
-        let mut list = List {
-            places: [0; LIST + TILE],
-            count: 0,
-        };
-        let near = &field.near[field.leaf[self.tile] as usize];
-        for (i, group) in near.iter().enumerate() {
-            let reach = field.reaches[group.reach];
-            let mut first = group.tiles.start;
-            while first < group.tiles.end {
-                let close = field.close_tiles(&bounds, first..group.tiles.end, reach);
-                for tile in first..group.tiles.end.min(first + TILE) {
-                    if close & 1 << (tile - first) != 0 {
-                        field.list_sources(&bounds, tile, reach, &mut list);
-                        if list.count > LIST - TILE {
-                            self.flush(simd, group.reach, &mut list);
-                        }
-                    }
-                }
-                first += TILE;
+        self.field.list(self.tile, self.list);
+        let mut start = 0;
+        for run in 0..self.list.ends.len() {
+            let (reach, end) = self.list.ends[run];
+            for register in 0..TILE / Lanes::<S>::COUNT {
+                self.add_listed(simd, register, reach, start..end);
             }
-            if near.get(i + 1).is_none_or(|next| next.reach != group.reach) {
-                self.flush(simd, group.reach, &mut list);
-            }
+            start = end;
         }
     }
 }
@@ -351,69 +346,79 @@ impl NearField {
         }
     }
 
-    /// Of the first eight tiles, a bit for each that is within reach.
+    /// Lists the sources within reach of the bounding box of a tile of targets, run by run of one reach, each run
+    /// filled up with the source of no strength.
     #[inline(always)]
-    fn close_tiles(&self, bounds: &Bounds, tiles: Range<usize>, reach: f64) -> u32 {
-        let count = tiles.len().min(TILE);
-        let mut boxes = [[[f64::INFINITY; TILE]; 3]; 2];
-        for axis in 0..3 {
-            let tiles = tiles.start..tiles.start + count;
-            boxes[0][axis][..count].copy_from_slice(&self.sources.low[axis][tiles.clone()]);
-            boxes[1][axis][..count].copy_from_slice(&self.sources.high[axis][tiles]);
+    fn list(&self, tile: usize, list: &mut List) {
+        let bounds = self.bounds(tile);
+        let near = &self.near[self.leaf[tile] as usize];
+        let most: usize = near.iter().map(|near| near.tiles.len()).sum();
+        list.places
+            .resize(TILE * (most + 2) + TOGETHER * self.reaches.len(), 0);
+        list.ends.clear();
+        let (mut count, mut close) = (0, [0; TILE]);
+        for (i, group) in near.iter().enumerate() {
+            let reach2 = self.reaches[group.reach] * self.reaches[group.reach];
+            for first in group.tiles.clone().step_by(TILE) {
+                let tiles = first..group.tiles.end.min(first + TILE);
+                let found = self.close_tiles(&bounds, tiles, reach2, &mut close);
+                for &tile in &close[..found] {
+                    count += self.close_places(&bounds, tile, reach2, &mut list.places[count..]);
+                }
+            }
+            if near.get(i + 1).is_none_or(|next| next.reach != group.reach) {
+                let vacant = count.next_multiple_of(TOGETHER) - count;
+                list.places[count..count + vacant].fill(self.sources.points.len() as u32);
+                count += vacant;
+                list.ends.push((group.reach, count));
+            }
         }
-        let [low, high] = &boxes;
-        let mut squares = [0.0; TILE];
-        bounds.distances(
-            [&low[0], &low[1], &low[2]],
-            [&high[0], &high[1], &high[2]],
-            &mut squares,
-        );
-        let mut bits = 0;
-        for i in 0..TILE {
-            bits |= u32::from(squares[i] < reach * reach) << i;
-        }
-        bits
     }
 
-    /// Lists those sources of a tile that are within reach.
+    /// Those of up to eight tiles that are within reach, and how many.
     #[inline(always)]
-    fn list_sources(&self, bounds: &Bounds, tile: usize, reach: f64, list: &mut List) {
-        let places = tile * TILE..(tile + 1) * TILE;
-        let positions = [
-            &self.sources.positions[0][places.clone()],
-            &self.sources.positions[1][places.clone()],
-            &self.sources.positions[2][places.clone()],
-        ];
-        let mut squares = [0.0; TILE];
-        bounds.distances(positions, positions, &mut squares);
-        let listed = &mut list.places[list.count..list.count + TILE];
+    fn close_tiles(
+        &self,
+        bounds: &Bounds,
+        tiles: Range<usize>,
+        reach2: f64,
+        close: &mut [u32; TILE],
+    ) -> usize {
+        let padded = tiles.start..tiles.start + TILE;
+        let (low, high) = (&self.sources.low, &self.sources.high);
+        let squares = bounds.distances(
+            [0, 1, 2].map(|axis| &low[axis][padded.clone()]),
+            [0, 1, 2].map(|axis| &high[axis][padded.clone()]),
+        );
+        let mut count = 0;
+        for i in 0..tiles.len() {
+            close[count] = (tiles.start + i) as u32;
+            count += usize::from(squares[i] < reach2);
+        }
+        count
+    }
+
+    /// The places of those sources of a tile that are within reach, and how many.
+    #[inline(always)]
+    fn close_places(&self, bounds: &Bounds, tile: u32, reach2: f64, close: &mut [u32]) -> usize {
+        let first = tile as usize * TILE;
+        let positions = &self.sources.positions;
+        let positions = [0, 1, 2].map(|axis| &positions[axis][first..first + TILE]);
+        let squares = bounds.distances(positions, positions);
+        let close = &mut close[..TILE];
         let mut count = 0;
         for i in 0..TILE {
-            listed[count & (TILE - 1)] = (places.start + i) as u32;
-            count += usize::from(squares[i] < reach * reach);
+            // The mask changes nothing but tells the compiler that the index is in bounds.
+            close[count & (TILE - 1)] = (first + i) as u32;
+            count += usize::from(squares[i] < reach2);
         }
-        list.count += count;
+        count
     }
 }
 
 impl<P: Pair> TileSum<'_, P> {
-    /// Sums the listed sources and clears the list.
     #[inline(always)]
-    fn flush<S: Isa>(&mut self, simd: S, reach: usize, list: &mut List) {
-        let dummy = self.field.sources.points.len() as u32;
-        while !list.count.is_multiple_of(TOGETHER) {
-            list.places[list.count] = dummy;
-            list.count += 1;
-        }
-        let registers = TILE / Lanes::<S>::COUNT;
-        for register in 0..registers {
-            self.add_listed(simd, register, reach, &list.places[..list.count]);
-        }
-        list.count = 0;
-    }
-
-    #[inline(always)]
-    fn add_listed<S: Isa>(&mut self, simd: S, register: usize, reach: usize, places: &[u32]) {
+    fn add_listed<S: Isa>(&mut self, simd: S, register: usize, reach: usize, run: Range<usize>) {
         let zero = Lanes::splat(simd, 0.0);
         let registers = TILE / Lanes::<S>::COUNT;
         let target = self.field.target(simd, self.tile, register);
@@ -423,7 +428,7 @@ impl<P: Pair> TileSum<'_, P> {
         let slope = Lanes::splat(simd, 2.0 / (length * length));
         let precision = self.field.precision;
         let mut sums = [zero; MOST];
-        for places in places.as_chunks::<TOGETHER>().0 {
+        for places in self.list.places[run].as_chunks::<TOGETHER>().0 {
             let mut records = [&self.records[..0]; TOGETHER];
             let mut x = [[zero; 3]; TOGETHER];
             let mut r2 = [zero; TOGETHER];
@@ -467,21 +472,38 @@ impl NearField {
     }
 }
 
-/// The polynomials of the orders that `P` needs, by Horner's scheme, at two places at once.
+/// The polynomials of the orders that `P` needs. Even and odd terms apart: Horner's scheme waits for itself.
 #[inline(always)]
 fn evaluate<S: Isa, P: Pair>(
     simd: S,
     coefficients: &[f64],
     s: &[Lanes<S>; TOGETHER],
 ) -> [[Lanes<S>; 4]; TOGETHER] {
+    let zero = Lanes::splat(simd, 0.0);
     let [first, last] = P::ORDERS;
-    let mut values = [[Lanes::splat(simd, 0.0); 4]; TOGETHER];
-    for term in coefficients.chunks_exact(1 + last - first) {
-        for order in first..=last {
-            let coefficient = Lanes::splat(simd, term[order - first]);
+    let orders = 1 + last - first;
+    let mut odd = [[zero; 4]; TOGETHER];
+    let mut even = [[zero; 4]; TOGETHER];
+    let mut square = [zero; TOGETHER];
+    for i in 0..TOGETHER {
+        square[i] = s[i] * s[i];
+    }
+    for terms in coefficients.chunks_exact(2 * orders) {
+        for n in 0..orders {
+            let (high, low) = (
+                Lanes::splat(simd, terms[n]),
+                Lanes::splat(simd, terms[orders + n]),
+            );
             for i in 0..TOGETHER {
-                values[i][order - 1] = values[i][order - 1].mul_add(s[i], coefficient);
+                odd[i][n] = odd[i][n].mul_add(square[i], high);
+                even[i][n] = even[i][n].mul_add(square[i], low);
             }
+        }
+    }
+    let mut values = [[zero; 4]; TOGETHER];
+    for i in 0..TOGETHER {
+        for n in 0..orders {
+            values[i][first - 1 + n] = odd[i][n].mul_add(s[i], even[i][n]);
         }
     }
     values

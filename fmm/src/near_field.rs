@@ -180,6 +180,7 @@ impl NearField {
         }
     }
 
+    #[inline(always)]
     fn targets(&self) -> &Tiles {
         self.targets.as_ref().unwrap_or(&self.sources)
     }
@@ -284,18 +285,29 @@ struct Bounds {
 }
 
 impl Bounds {
-    /// Squares of the distances from the box of eight boxes `low` to `high`; of points where the two are the same.
+    /// Squares of the distances from the box of the eight boxes from number `first` on; of points where `low` is
+    /// `high`.
     #[inline(always)]
-    fn distances(&self, low: [&[f64]; 3], high: [&[f64]; 3]) -> [f64; TILE] {
+    fn distances<S: Isa>(
+        &self,
+        simd: S,
+        low: &[Vec<f64>; 3],
+        high: &[Vec<f64>; 3],
+        first: usize,
+    ) -> [f64; TILE] {
+        let zero = Lanes::splat(simd, 0.0);
         let mut squares = [0.0; TILE];
-        for axis in 0..3 {
-            let (low, high) = (&low[axis][..TILE], &high[axis][..TILE]);
-            for i in 0..TILE {
-                let (below, above) = (self.low[axis] - high[i], low[i] - self.high[axis]);
-                let gap = if below > above { below } else { above };
-                let gap = if gap > 0.0 { gap } else { 0.0 };
-                squares[i] += gap * gap;
+        for register in 0..TILE / Lanes::<S>::COUNT {
+            let mut sum = zero;
+            for axis in 0..3 {
+                let low = Lanes::load(simd, &low[axis][first..first + TILE], register);
+                let high = Lanes::load(simd, &high[axis][first..first + TILE], register);
+                let (below, above) = (self.low[axis] - high, low - self.high[axis]);
+                let gap = above.select_less(below, below, above);
+                let gap = zero.select_less(gap, gap, zero);
+                sum = gap.mul_add(gap, sum);
             }
+            sum.store(&mut squares, register);
         }
         squares
     }
@@ -325,7 +337,7 @@ impl<P: Pair> WithIsa for TileSum<'_, P> {
 
     #[inline(always)]
     fn with_isa<S: Isa>(mut self, simd: S) {
-        self.field.list(self.tile, self.list);
+        self.field.list(simd, self.tile, self.list);
         let mut start = 0;
         for run in 0..self.list.ends.len() {
             let (reach, end) = self.list.ends[run];
@@ -338,18 +350,19 @@ impl<P: Pair> WithIsa for TileSum<'_, P> {
 }
 
 impl NearField {
+    #[inline(always)]
     fn bounds(&self, tile: usize) -> Bounds {
-        let targets = self.targets();
+        let (low, high) = (&self.targets().low, &self.targets().high);
         Bounds {
-            low: [0, 1, 2].map(|axis| targets.low[axis][tile]),
-            high: [0, 1, 2].map(|axis| targets.high[axis][tile]),
+            low: [low[0][tile], low[1][tile], low[2][tile]],
+            high: [high[0][tile], high[1][tile], high[2][tile]],
         }
     }
 
     /// Lists the sources within reach of the bounding box of a tile of targets, run by run of one reach, each run
     /// filled up with the source of no strength.
     #[inline(always)]
-    fn list(&self, tile: usize, list: &mut List) {
+    fn list<S: Isa>(&self, simd: S, tile: usize, list: &mut List) {
         let bounds = self.bounds(tile);
         let near = &self.near[self.leaf[tile] as usize];
         let most: usize = near.iter().map(|near| near.tiles.len()).sum();
@@ -361,9 +374,10 @@ impl NearField {
             let reach2 = self.reaches[group.reach] * self.reaches[group.reach];
             for first in group.tiles.clone().step_by(TILE) {
                 let tiles = first..group.tiles.end.min(first + TILE);
-                let found = self.close_tiles(&bounds, tiles, reach2, &mut close);
+                let found = self.close_tiles(simd, &bounds, tiles, reach2, &mut close);
                 for &tile in &close[..found] {
-                    count += self.close_places(&bounds, tile, reach2, &mut list.places[count..]);
+                    count +=
+                        self.close_places(simd, &bounds, tile, reach2, &mut list.places[count..]);
                 }
             }
             if near.get(i + 1).is_none_or(|next| next.reach != group.reach) {
@@ -377,43 +391,52 @@ impl NearField {
 
     /// Those of up to eight tiles that are within reach, and how many.
     #[inline(always)]
-    fn close_tiles(
+    fn close_tiles<S: Isa>(
         &self,
+        simd: S,
         bounds: &Bounds,
         tiles: Range<usize>,
         reach2: f64,
         close: &mut [u32; TILE],
     ) -> usize {
-        let padded = tiles.start..tiles.start + TILE;
         let (low, high) = (&self.sources.low, &self.sources.high);
-        let squares = bounds.distances(
-            [0, 1, 2].map(|axis| &low[axis][padded.clone()]),
-            [0, 1, 2].map(|axis| &high[axis][padded.clone()]),
-        );
+        let squares = bounds.distances(simd, low, high, tiles.start);
         let mut count = 0;
         for i in 0..tiles.len() {
-            close[count] = (tiles.start + i) as u32;
-            count += usize::from(squares[i] < reach2);
+            close[count & (TILE - 1)] = (tiles.start + i) as u32;
+            count += below(squares[i], reach2);
         }
         count
     }
 
     /// The places of those sources of a tile that are within reach, and how many.
     #[inline(always)]
-    fn close_places(&self, bounds: &Bounds, tile: u32, reach2: f64, close: &mut [u32]) -> usize {
+    fn close_places<S: Isa>(
+        &self,
+        simd: S,
+        bounds: &Bounds,
+        tile: u32,
+        reach2: f64,
+        close: &mut [u32],
+    ) -> usize {
         let first = tile as usize * TILE;
         let positions = &self.sources.positions;
-        let positions = [0, 1, 2].map(|axis| &positions[axis][first..first + TILE]);
-        let squares = bounds.distances(positions, positions);
+        let squares = bounds.distances(simd, positions, positions, first);
         let close = &mut close[..TILE];
         let mut count = 0;
         for i in 0..TILE {
             // The mask changes nothing but tells the compiler that the index is in bounds.
             close[count & (TILE - 1)] = (first + i) as u32;
-            count += usize::from(squares[i] < reach2);
+            count += below(squares[i], reach2);
         }
         count
     }
+}
+
+/// 1 if `square < bound`, else 0, from the sign of the difference: a comparison would be vectorised, at a loss.
+#[inline(always)]
+fn below(square: f64, bound: f64) -> usize {
+    ((square - bound).to_bits() >> 63) as usize
 }
 
 impl<P: Pair> TileSum<'_, P> {

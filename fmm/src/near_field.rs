@@ -285,32 +285,65 @@ struct Bounds {
 }
 
 impl Bounds {
-    /// Squares of the distances from the box of the eight boxes from number `first` on; of points where `low` is
-    /// `high`.
+    /// A bit for each of the eight boxes from number `first` on that is nearer than the root of `reach2`; boxes are
+    /// points where `low` is `high`.
     #[inline(always)]
-    fn distances<S: Isa>(
+    fn near<S: Isa>(
         &self,
         simd: S,
         low: &[Vec<f64>; 3],
         high: &[Vec<f64>; 3],
         first: usize,
-    ) -> [f64; TILE] {
+        reach2: f64,
+    ) -> usize {
         let zero = Lanes::splat(simd, 0.0);
-        let mut squares = [0.0; TILE];
+        let mut bits = zero;
         for register in 0..TILE / Lanes::<S>::COUNT {
-            let mut sum = zero;
+            let mut square = zero;
             for axis in 0..3 {
                 let low = Lanes::load(simd, &low[axis][first..first + TILE], register);
                 let high = Lanes::load(simd, &high[axis][first..first + TILE], register);
                 let (below, above) = (self.low[axis] - high, low - self.high[axis]);
                 let gap = above.select_less(below, below, above);
                 let gap = zero.select_less(gap, gap, zero);
-                sum = gap.mul_add(gap, sum);
+                square = gap.mul_add(gap, square);
             }
-            sum.store(&mut squares, register);
+            let bit = Lanes::load(simd, &BITS, register);
+            bits += square.select_less(Lanes::splat(simd, reach2), bit, zero);
         }
-        squares
+        bits.sum() as usize
     }
+}
+
+/// $2^i$: sums of them are bit masks, which have no instruction of their own here.
+const BITS: [f64; TILE] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0];
+
+/// For each byte the places of its bits that are set, lowest first.
+const PLACES: [[u8; TILE]; 256] = {
+    let mut places = [[0; TILE]; 256];
+    let mut byte = 0;
+    while byte < 256 {
+        let (mut place, mut count) = (0, 0);
+        while place < TILE {
+            if byte >> place & 1 == 1 {
+                places[byte][count] = place as u8;
+                count += 1;
+            }
+            place += 1;
+        }
+        byte += 1;
+    }
+    places
+};
+
+/// Writes `first` plus the place of each bit of `bits` to `list`, whatever beyond them, and returns how many they are.
+#[inline(always)]
+fn unpack(bits: usize, first: usize, list: &mut [u32]) -> usize {
+    let (places, list) = (&PLACES[bits & 255], &mut list[..TILE]);
+    for i in 0..TILE {
+        list[i] = first as u32 + u32::from(places[i]);
+    }
+    bits.count_ones() as usize
 }
 
 /// Sources within reach of a tile of targets.
@@ -372,13 +405,23 @@ impl NearField {
         let (mut count, mut close) = (0, [0; TILE]);
         for (i, group) in near.iter().enumerate() {
             let reach2 = self.reaches[group.reach] * self.reaches[group.reach];
-            for first in group.tiles.clone().step_by(TILE) {
-                let tiles = first..group.tiles.end.min(first + TILE);
-                let found = self.close_tiles(simd, &bounds, tiles, reach2, &mut close);
+            let Tiles {
+                positions,
+                low,
+                high,
+                ..
+            } = &self.sources;
+            let mut first = group.tiles.start;
+            while first < group.tiles.end {
+                let wanted = (1 << (group.tiles.end - first).min(TILE)) - 1;
+                let bits = bounds.near(simd, low, high, first, reach2) & wanted;
+                let found = unpack(bits, first, &mut close);
                 for &tile in &close[..found] {
-                    count +=
-                        self.close_places(simd, &bounds, tile, reach2, &mut list.places[count..]);
+                    let first = TILE * tile as usize;
+                    let bits = bounds.near(simd, positions, positions, first, reach2);
+                    count += unpack(bits, first, &mut list.places[count..]);
                 }
+                first += TILE;
             }
             if near.get(i + 1).is_none_or(|next| next.reach != group.reach) {
                 let vacant = count.next_multiple_of(TOGETHER) - count;
@@ -388,55 +431,6 @@ impl NearField {
             }
         }
     }
-
-    /// Those of up to eight tiles that are within reach, and how many.
-    #[inline(always)]
-    fn close_tiles<S: Isa>(
-        &self,
-        simd: S,
-        bounds: &Bounds,
-        tiles: Range<usize>,
-        reach2: f64,
-        close: &mut [u32; TILE],
-    ) -> usize {
-        let (low, high) = (&self.sources.low, &self.sources.high);
-        let squares = bounds.distances(simd, low, high, tiles.start);
-        let mut count = 0;
-        for i in 0..tiles.len() {
-            close[count & (TILE - 1)] = (tiles.start + i) as u32;
-            count += below(squares[i], reach2);
-        }
-        count
-    }
-
-    /// The places of those sources of a tile that are within reach, and how many.
-    #[inline(always)]
-    fn close_places<S: Isa>(
-        &self,
-        simd: S,
-        bounds: &Bounds,
-        tile: u32,
-        reach2: f64,
-        close: &mut [u32],
-    ) -> usize {
-        let first = tile as usize * TILE;
-        let positions = &self.sources.positions;
-        let squares = bounds.distances(simd, positions, positions, first);
-        let close = &mut close[..TILE];
-        let mut count = 0;
-        for i in 0..TILE {
-            // The mask changes nothing but tells the compiler that the index is in bounds.
-            close[count & (TILE - 1)] = (first + i) as u32;
-            count += below(squares[i], reach2);
-        }
-        count
-    }
-}
-
-/// 1 if `square < bound`, else 0, from the sign of the difference: a comparison would be vectorised, at a loss.
-#[inline(always)]
-fn below(square: f64, bound: f64) -> usize {
-    ((square - bound).to_bits() >> 63) as usize
 }
 
 impl<P: Pair> TileSum<'_, P> {

@@ -15,8 +15,8 @@ use crate::tree::{SortedPoints, Tree};
 
 /// Points per tile: one register of the widest instruction set.
 const TILE: usize = PADDING;
-/// Sources that share the load of a polynomial's coefficients.
-const TOGETHER: usize = 2;
+/// Lists are filled up to a multiple of this many sources.
+const TOGETHER: usize = 4;
 /// Place in a tile that no point holds.
 const VACANT: u32 = u32::MAX;
 
@@ -245,16 +245,10 @@ impl NearField {
         records
     }
 
-    /// For each reach $L$ the coefficients of $L^{1-2n} b_n$ for the orders $n$ from first to last, side by side, an
-    /// even number of each.
+    /// For each reach $L$ the coefficients of $L^{1-2n} b_n$ for the orders $n$ from first to last, side by side.
     fn polynomials(&self, [first, last]: [usize; 2]) -> Vec<Vec<f64>> {
         let orders = &self.chain[first - 1..last];
-        let terms = orders
-            .iter()
-            .map(Vec::len)
-            .max()
-            .unwrap_or(0)
-            .next_multiple_of(2);
+        let terms = orders.iter().map(Vec::len).max().unwrap_or(0);
         let interleaved = |reach: &f64| {
             let mut coefficients = Vec::with_capacity(terms * orders.len());
             for term in 0..terms {
@@ -375,7 +369,14 @@ impl<P: Pair> WithIsa for TileSum<'_, P> {
         for run in 0..self.list.ends.len() {
             let (reach, end) = self.list.ends[run];
             for register in 0..TILE / Lanes::<S>::COUNT {
-                self.add_listed(simd, register, reach, start..end);
+                // As many chains of multiply-adds at a time as the registers bear.
+                if P::OUTPUTS > 4 {
+                    self.add_listed::<S, 1>(simd, register, reach, start..end);
+                } else if P::ORDERS[1] - P::ORDERS[0] > 1 || P::STRENGTHS > 3 {
+                    self.add_listed::<S, 2>(simd, register, reach, start..end);
+                } else {
+                    self.add_listed::<S, 4>(simd, register, reach, start..end);
+                }
             }
             start = end;
         }
@@ -434,8 +435,15 @@ impl NearField {
 }
 
 impl<P: Pair> TileSum<'_, P> {
+    /// Sums a run of the list, `TOGETHER` sources at a time.
     #[inline(always)]
-    fn add_listed<S: Isa>(&mut self, simd: S, register: usize, reach: usize, run: Range<usize>) {
+    fn add_listed<S: Isa, const TOGETHER: usize>(
+        &mut self,
+        simd: S,
+        register: usize,
+        reach: usize,
+        run: Range<usize>,
+    ) {
         let zero = Lanes::splat(simd, 0.0);
         let registers = TILE / Lanes::<S>::COUNT;
         let target = self.field.target(simd, self.tile, register);
@@ -459,7 +467,7 @@ impl<P: Pair> TileSum<'_, P> {
                 r2[i] = dot(&x[i], &x[i]);
                 s[i] = r2[i].mul_add(slope, Lanes::splat(simd, -1.0));
             }
-            let mollified = evaluate::<S, P>(simd, coefficients, &s);
+            let mollified = evaluate::<S, P, TOGETHER>(simd, coefficients, &s);
             for i in 0..TOGETHER {
                 let chain = Chain::residual(r2[i], reach2, &mollified[i], precision);
                 P::add(&x[i], &chain, &records[i][3..], &mut sums);
@@ -489,38 +497,21 @@ impl NearField {
     }
 }
 
-/// The polynomials of the orders that `P` needs. Even and odd terms apart: Horner's scheme waits for itself.
+/// The polynomials of the orders that `P` needs, by Horner's scheme.
 #[inline(always)]
-fn evaluate<S: Isa, P: Pair>(
+fn evaluate<S: Isa, P: Pair, const TOGETHER: usize>(
     simd: S,
     coefficients: &[f64],
     s: &[Lanes<S>; TOGETHER],
 ) -> [[Lanes<S>; 4]; TOGETHER] {
-    let zero = Lanes::splat(simd, 0.0);
     let [first, last] = P::ORDERS;
-    let orders = 1 + last - first;
-    let mut odd = [[zero; 4]; TOGETHER];
-    let mut even = [[zero; 4]; TOGETHER];
-    let mut square = [zero; TOGETHER];
-    for i in 0..TOGETHER {
-        square[i] = s[i] * s[i];
-    }
-    for terms in coefficients.chunks_exact(2 * orders) {
-        for n in 0..orders {
-            let (high, low) = (
-                Lanes::splat(simd, terms[n]),
-                Lanes::splat(simd, terms[orders + n]),
-            );
+    let mut values = [[Lanes::splat(simd, 0.0); 4]; TOGETHER];
+    for term in coefficients.chunks_exact(1 + last - first) {
+        for order in first..=last {
+            let coefficient = Lanes::splat(simd, term[order - first]);
             for i in 0..TOGETHER {
-                odd[i][n] = odd[i][n].mul_add(square[i], high);
-                even[i][n] = even[i][n].mul_add(square[i], low);
+                values[i][order - 1] = values[i][order - 1].mul_add(s[i], coefficient);
             }
-        }
-    }
-    let mut values = [[zero; 4]; TOGETHER];
-    for i in 0..TOGETHER {
-        for n in 0..orders {
-            values[i][first - 1 + n] = odd[i][n].mul_add(s[i], even[i][n]);
         }
     }
     values

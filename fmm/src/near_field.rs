@@ -4,6 +4,11 @@
 //! $4\pi/81 = 16\%$ are in reach. So points are sorted into tiles of eight neighbours, and a tile of targets picks
 //! first the tiles of sources, then the single sources within reach of its bounding box. Only those are summed.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "index loops over small fixed arrays are what stays in registers"
+)]
+
 use std::marker::PhantomData;
 use std::ops::Range;
 

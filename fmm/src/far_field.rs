@@ -6,67 +6,50 @@ use f64_lanes::{Isa, WithIsa, dispatch};
 use rayon::prelude::*;
 
 use crate::far::{FIELDS, Far};
-use crate::gemm::Into;
 use crate::gridding::{self, Cube};
 use crate::operators::Operators;
-use crate::transfer::GridShape;
-use crate::transform::{BATCH, Transform};
-use crate::translate::Sweeps;
+use crate::transform::BATCH;
+use crate::translate::Slab;
 use crate::tree::{GriddedBox, SortedPoints, Tree};
 
 /// Charges of the sources, in the order of the tree: for each density its charge and, behind all charges, for
 /// each density its dipole along x, y and z.
 pub(crate) type Charges = Vec<Vec<f64>>;
 
-/// How the boxes of each level are gathered for their transforms.
+/// How the boxes of the tree work together.
 #[derive(Clone, Debug)]
 pub(crate) struct FarField {
-    levels: Vec<LevelPlan>,
+    /// How the boxes of each level hand on their waves.
+    levels: Vec<Vec<Slab>>,
     /// Level and box of each leaf.
     homes: Vec<[u32; 2]>,
-}
-
-#[derive(Clone, Debug)]
-struct LevelPlan {
-    /// Boxes with sources.
-    sources: Vec<u32>,
-    /// Boxes with targets.
-    targets: Vec<u32>,
-    sweeps: Sweeps,
 }
 
 /// Grids of all boxes, one level after the other.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Grids {
     levels: Vec<Vec<f64>>,
-    /// Potentials' waves of the sources of one level.
+    /// Potentials' waves of the sources of one slab.
     waves: Vec<f64>,
-    /// One of these fields, translated.
-    translated: Vec<f64>,
+    /// The waves of this slab and the two before, taken over x and y.
+    swept: [Vec<f64>; 3],
+    /// Those of the targets that are served with a slab, taken over z too.
+    gathered: Vec<f64>,
 }
 
 impl FarField {
     pub fn new(tree: &Tree) -> Self {
         let levels = tree.levels.iter().map(|level| {
-            let with = |full: fn(&GriddedBox) -> bool| -> Vec<u32> {
-                (0..level.boxes.len() as u32)
-                    .filter(|&b| full(&level.boxes[b as usize]))
+            let with = |full: fn(&GriddedBox) -> bool| -> Vec<(u32, [i64; 3])> {
+                let numbered = (0..).zip(&level.boxes).filter(|(_, gridded)| full(gridded));
+                numbered
+                    .map(|(number, gridded)| (number, gridded.place))
                     .collect()
             };
-            let sources = with(|b| !b.sources.is_empty());
-            let targets = with(|b| !b.targets.is_empty());
-            let places = |boxes: &[u32]| -> Vec<[i64; 3]> {
-                boxes
-                    .iter()
-                    .map(|&b| level.boxes[b as usize].place)
-                    .collect()
-            };
-            let sweeps = Sweeps::new(&places(&sources), &places(&targets));
-            LevelPlan {
-                sources,
-                targets,
-                sweeps,
-            }
+            Slab::cut(
+                &with(|b| !b.sources.is_empty()),
+                &with(|b| !b.targets.is_empty()),
+            )
         });
         let mut homes = vec![[0; 2]; tree.leaves.len()];
         for (depth, level) in tree.levels.iter().enumerate() {
@@ -175,90 +158,41 @@ impl FarField {
         depth: usize,
         len: usize,
     ) {
-        let (level, plan) = (&tree.levels[depth], &self.levels[depth]);
-        let (transform, symbol) = if depth == 0 {
-            (&operators.root.transform, &operators.root.symbol)
-        } else {
-            (&operators.level.transform, &operators.level.symbol)
-        };
-        if plan.sources.is_empty() || plan.targets.is_empty() {
-            return;
-        }
+        let side = tree.levels[depth].side;
         let Grids {
             levels,
             waves,
-            translated,
+            swept,
+            gathered,
         } = grids;
-        let fields = &mut levels[depth];
-        let batch_len = K::POTENTIALS * transform.waves_len();
-        waves.resize(plan.sources.len().div_ceil(BATCH) * batch_len, 0.0);
+        let mut boxes: Vec<&mut [f64]> = levels[depth].chunks_exact_mut(len).collect();
         let shape = operators.shape;
-        waves
-            .par_chunks_exact_mut(batch_len)
-            .zip(plan.sources.par_chunks(BATCH))
-            .for_each_init(
-                || {
-                    (
-                        transform.scratch(),
-                        vec![0.0; K::DENSITIES * transform.waves_len()],
-                    )
-                },
-                |(scratch, densities), (waves, batch)| {
-                    dispatch(Forward {
-                        transform,
-                        shape,
-                        fields,
-                        len,
-                        batch,
-                        densities,
-                        scratch,
-                    });
-                    dispatch(Multiply {
-                        symbol,
-                        side: level.side,
-                        densities,
-                        potentials: waves,
-                    });
-                },
-            );
-        let mut boxes: Vec<&mut [f64]> = fields
-            .chunks_exact_mut(len)
-            .zip(&level.boxes)
-            .filter(|(_, gridded)| !gridded.targets.is_empty())
-            .map(|(grid, _)| grid)
-            .collect();
-        let batches = plan.targets.len().div_ceil(BATCH);
-        for potential in 0..K::POTENTIALS {
-            let field = |batch: usize| -> &[f64] {
-                &waves[batch * batch_len + potential * transform.waves_len()..]
-                    [..transform.waves_len()]
+        if depth == 0 {
+            let across = &operators.root;
+            across.forward::<K>(shape, side, &boxes, &[0], waves);
+            let waves_of = |field: usize, _: usize, out: &mut [f64]| {
+                out.copy_from_slice(&waves[field * out.len()..][..out.len()]);
             };
-            if depth > 0 {
-                operators.turns.translate(&plan.sweeps, field, translated);
-            }
-            let translated = &*translated;
-            boxes.par_chunks_mut(BATCH).enumerate().for_each_init(
-                || (transform.scratch(), vec![0.0; transform.waves_len()]),
-                |(scratch, waves), (batch, boxes)| {
-                    if depth > 0 {
-                        operators.turns.batch(translated, batches, batch, waves);
-                    } else {
-                        waves.copy_from_slice(field(0));
-                    }
-                    let at = potential * shape.field();
-                    let mut grids: Vec<&mut [f64]> = boxes
-                        .iter_mut()
-                        .map(|grid| &mut grid[at..at + shape.field()])
-                        .collect();
-                    dispatch(Backward {
-                        transform,
-                        waves,
-                        grids: &mut grids,
-                        stride: shape.stride(),
-                        scratch,
-                    });
-                },
-            );
+            across.backward(shape, K::POTENTIALS, &mut boxes, &[0], waves_of);
+            return;
+        }
+        for (number, slab) in self.levels[depth].iter().enumerate() {
+            let across = &operators.level;
+            across.forward::<K>(shape, side, &boxes, &slab.sources, waves);
+            swept.rotate_right(1);
+            operators
+                .turns
+                .sweep(slab, K::POTENTIALS, waves, &mut swept[0]);
+            let kept: Vec<&[f64]> = swept[..swept.len().min(number + 1)]
+                .iter()
+                .map(|s| &s[..])
+                .collect();
+            operators.turns.gather(slab, K::POTENTIALS, &kept, gathered);
+            let batches = slab.targets.len().div_ceil(BATCH);
+            let waves_of = |field: usize, batch: usize, out: &mut [f64]| {
+                operators.turns.batch(gathered, field, batch, batches, out);
+            };
+            across.backward(shape, K::POTENTIALS, &mut boxes, &slab.targets, waves_of);
         }
     }
 
@@ -419,83 +353,6 @@ fn interpolate<K: Far>(
         (4, false) => gridding::interpolate::<4, false>(window, cube, positions, grid, values),
         (4, true) => gridding::interpolate::<4, true>(window, cube, positions, grid, values),
         other => unreachable!("no kernel has {other:?}"),
-    }
-}
-
-/// The waves of a batch of boxes.
-struct Forward<'a> {
-    transform: &'a Transform,
-    shape: GridShape,
-    fields: &'a [f64],
-    len: usize,
-    batch: &'a [u32],
-    densities: &'a mut [f64],
-    scratch: &'a mut crate::transform::Scratch,
-}
-
-impl WithIsa for Forward<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_isa<S: Isa>(self, simd: S) {
-        for (density, waves) in self
-            .densities
-            .chunks_exact_mut(self.transform.waves_len())
-            .enumerate()
-        {
-            let mut grids = [&self.fields[..0]; BATCH];
-            for lane in 0..BATCH {
-                // A batch that is not full repeats its last box: nobody reads those lanes.
-                let number = self.batch[lane.min(self.batch.len() - 1)] as usize;
-                let at = number * self.len + density * self.shape.field();
-                grids[lane] = &self.fields[at..][..self.shape.field()];
-            }
-            self.transform
-                .forward(simd, grids, self.shape.stride(), waves, self.scratch);
-        }
-    }
-}
-
-/// Densities to potentials.
-struct Multiply<'a> {
-    symbol: &'a crate::symbol::Symbol,
-    side: f64,
-    densities: &'a [f64],
-    potentials: &'a mut [f64],
-}
-
-impl WithIsa for Multiply<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_isa<S: Isa>(self, simd: S) {
-        self.symbol
-            .apply(simd, self.side, self.densities, self.potentials);
-    }
-}
-
-/// Waves of a batch to one field of its boxes.
-struct Backward<'a, 'b> {
-    transform: &'a Transform,
-    waves: &'a [f64],
-    grids: &'a mut [&'b mut [f64]],
-    stride: usize,
-    scratch: &'a mut crate::transform::Scratch,
-}
-
-impl WithIsa for Backward<'_, '_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_isa<S: Isa>(self, simd: S) {
-        let Self {
-            transform,
-            waves,
-            grids,
-            stride,
-            scratch,
-        } = self;
-        transform.backward(simd, waves, grids, stride, Into::Replace, scratch);
     }
 }
 

@@ -1,5 +1,6 @@
 //! Fast summation of Stokeslets, stresslets, rotlets and sources.
 
+mod across;
 pub mod direct;
 mod error;
 mod far;

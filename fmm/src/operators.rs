@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use crate::across::Across;
 use crate::error::FmmError;
 use crate::far::Far;
 use crate::parameters::Parameters;
@@ -28,13 +29,6 @@ pub(crate) struct Operators {
     pub transfer: Transfer,
     /// Mollified chain, order by order from 1, as polynomials in $s = 2(r/L)^2 - 1$, highest power first.
     pub mollified: [Vec<f64>; 4],
-}
-
-/// From charges on a grid to potentials on a grid.
-#[derive(Clone, Debug)]
-pub(crate) struct Across {
-    pub transform: Transform,
-    pub symbol: Symbol,
 }
 
 impl Operators {

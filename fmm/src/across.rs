@@ -3,7 +3,7 @@
 use f64_lanes::{Isa, WithIsa, dispatch};
 use rayon::prelude::*;
 
-use crate::far::Far;
+use crate::far::Fields;
 use crate::gemm::Into;
 use crate::symbol::Symbol;
 use crate::transfer::GridShape;
@@ -18,8 +18,9 @@ pub(crate) struct Across {
 
 impl Across {
     /// Waves of the potentials of the boxes of numbers `batches`, of side `side`, batch by batch and in each field by field.
-    pub fn forward<K: Far>(
+    pub fn forward(
         &self,
+        fields: Fields,
         shape: GridShape,
         side: f64,
         boxes: &[&mut [f64]],
@@ -27,11 +28,19 @@ impl Across {
         waves: &mut Vec<f64>,
     ) {
         let field = self.transform.waves_len();
-        waves.resize(numbers.len().div_ceil(BATCH) * K::POTENTIALS * field, 0.0);
+        waves.resize(
+            numbers.len().div_ceil(BATCH) * fields.potentials * field,
+            0.0,
+        );
         let batches = waves
-            .par_chunks_exact_mut(K::POTENTIALS * field)
+            .par_chunks_exact_mut(fields.potentials * field)
             .zip(numbers.par_chunks(BATCH));
-        let memory = || (self.transform.scratch(), vec![0.0; K::DENSITIES * field]);
+        let memory = || {
+            (
+                self.transform.scratch(),
+                vec![0.0; fields.densities * field],
+            )
+        };
         batches.for_each_init(memory, |(scratch, densities), (potentials, batch)| {
             let transform = &self.transform;
             dispatch(Forward {

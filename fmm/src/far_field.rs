@@ -5,7 +5,7 @@ use std::ops::Range;
 use f64_lanes::{Isa, WithIsa, dispatch};
 use rayon::prelude::*;
 
-use crate::far::{FIELDS, Far};
+use crate::far::Fields;
 use crate::gridding::{self, Cube};
 use crate::operators::Operators;
 use crate::transform::BATCH;
@@ -66,34 +66,36 @@ impl FarField {
     }
 
     /// Lays the charges on the grids, and leaves potentials there.
-    pub fn fill<K: Far>(
+    pub fn fill(
         &self,
         operators: &Operators,
+        fields: Fields,
         tree: &Tree,
         charges: &Charges,
         grids: &mut Grids,
     ) {
         let shape = operators.shape;
-        let len = shape.len(FIELDS.min(K::DENSITIES.max(K::POTENTIALS)));
+        let len = shape.len(fields.most());
         grids.levels.resize_with(tree.levels.len(), Vec::new);
         for (level, grids) in tree.levels.iter().zip(&mut grids.levels) {
             grids.resize(level.boxes.len() * len, 0.0);
         }
         for depth in (0..tree.levels.len()).rev() {
-            self.up::<K>(operators, tree, charges, grids, depth, len);
+            self.up(operators, fields, tree, charges, grids, depth, len);
         }
         for depth in 0..tree.levels.len() {
-            self.across::<K>(operators, tree, grids, depth, len);
+            self.across(operators, fields, tree, grids, depth, len);
             if depth > 0 {
-                self.down::<K>(operators, tree, grids, depth, len);
+                self.down(operators, fields, tree, grids, depth, len);
             }
         }
     }
 
     /// Charges of the leaves and of the children's grids on the grids of one level.
-    fn up<K: Far>(
+    fn up(
         &self,
         operators: &Operators,
+        fields: Fields,
         tree: &Tree,
         charges: &Charges,
         grids: &mut Grids,
@@ -124,7 +126,7 @@ impl FarField {
                                 center: gridded.center,
                                 side: level.side,
                             };
-                            spread::<K>(operators, cube, &tree.sources, charges, range, grid);
+                            spread(operators, fields, cube, &tree.sources, charges, range, grid);
                         }
                     }
                     let Some(finer) = finer else { return };
@@ -137,7 +139,7 @@ impl FarField {
                         let from = &children[child as usize * len..][..len];
                         dispatch(Handing {
                             up: true,
-                            fields: K::DENSITIES,
+                            fields: fields.densities,
                             octant,
                             from,
                             to: grid,
@@ -150,9 +152,10 @@ impl FarField {
     }
 
     /// Charges of all boxes of a level to potentials, by plane waves.
-    fn across<K: Far>(
+    fn across(
         &self,
         operators: &Operators,
+        fields: Fields,
         tree: &Tree,
         grids: &mut Grids,
         depth: usize,
@@ -169,37 +172,46 @@ impl FarField {
         let shape = operators.shape;
         if depth == 0 {
             let across = &operators.root;
-            across.forward::<K>(shape, side, &boxes, &[0], waves);
+            across.forward(fields, shape, side, &boxes, &[0], waves);
             let waves_of = |field: usize, _: usize, out: &mut [f64]| {
                 out.copy_from_slice(&waves[field * out.len()..][..out.len()]);
             };
-            across.backward(shape, K::POTENTIALS, &mut boxes, &[0], waves_of);
+            across.backward(shape, fields.potentials, &mut boxes, &[0], waves_of);
             return;
         }
         for (number, slab) in self.levels[depth].iter().enumerate() {
             let across = &operators.level;
-            across.forward::<K>(shape, side, &boxes, &slab.sources, waves);
+            across.forward(fields, shape, side, &boxes, &slab.sources, waves);
             swept.rotate_right(1);
             operators
                 .turns
-                .sweep(slab, K::POTENTIALS, waves, &mut swept[0]);
+                .sweep(slab, fields.potentials, waves, &mut swept[0]);
             let kept: Vec<&[f64]> = swept[..swept.len().min(number + 1)]
                 .iter()
                 .map(|s| &s[..])
                 .collect();
-            operators.turns.gather(slab, K::POTENTIALS, &kept, gathered);
+            operators
+                .turns
+                .gather(slab, fields.potentials, &kept, gathered);
             let batches = slab.targets.len().div_ceil(BATCH);
             let waves_of = |field: usize, batch: usize, out: &mut [f64]| {
                 operators.turns.batch(gathered, field, batch, batches, out);
             };
-            across.backward(shape, K::POTENTIALS, &mut boxes, &slab.targets, waves_of);
+            across.backward(
+                shape,
+                fields.potentials,
+                &mut boxes,
+                &slab.targets,
+                waves_of,
+            );
         }
     }
 
     /// Adds the potentials of the parents to those of one level.
-    fn down<K: Far>(
+    fn down(
         &self,
         operators: &Operators,
+        fields: Fields,
         tree: &Tree,
         grids: &mut Grids,
         depth: usize,
@@ -219,7 +231,7 @@ impl FarField {
                     }
                     dispatch(Handing {
                         up: false,
-                        fields: K::POTENTIALS,
+                        fields: fields.potentials,
                         octant: gridded.octant,
                         from: &parents[gridded.parent as usize * len..][..len],
                         to: grid,
@@ -232,17 +244,18 @@ impl FarField {
 
     /// Adds the potentials and, behind them, the derivatives of as many of them as there are outputs left, to
     /// `outputs`: columns over the targets in the tree's order.
-    pub fn read<K: Far>(
+    pub fn read(
         &self,
         operators: &Operators,
+        fields: Fields,
         tree: &Tree,
         grids: &Grids,
         outputs: &mut [Vec<f64>],
     ) {
         let points = tree.target_points();
         let mut parts = self.parts(tree, outputs);
-        let len = operators.shape.len(K::DENSITIES.max(K::POTENTIALS));
-        let numbers = K::POTENTIALS * if K::GRADIENTS { 4 } else { 1 };
+        let len = operators.shape.len(fields.most());
+        let numbers = fields.potentials * if fields.gradients { 4 } else { 1 };
         parts
             .par_iter_mut()
             .for_each_init(Vec::new, |values, (leaf, columns)| {
@@ -250,8 +263,8 @@ impl FarField {
                 let level = &tree.levels[depth];
                 let targets = tree.leaves[*leaf as usize].targets.clone();
                 let range = targets.start as usize..targets.end as usize;
-                let grid =
-                    &grids.levels[depth][number * len..][..K::POTENTIALS * operators.shape.field()];
+                let grid = &grids.levels[depth][number * len..]
+                    [..fields.potentials * operators.shape.field()];
                 values.clear();
                 values.resize(range.len() * numbers, 0.0);
                 let cube = Cube {
@@ -259,7 +272,7 @@ impl FarField {
                     side: level.side,
                 };
                 let positions = points.positions.each_ref().map(|x| &x[range.clone()]);
-                interpolate::<K>(operators, cube, positions, grid, values);
+                interpolate(operators, fields, cube, positions, grid, values);
                 for (column, out) in columns.iter_mut().enumerate() {
                     for (out, values) in out.iter_mut().zip(values.chunks_exact(numbers)) {
                         *out += values[column];
@@ -292,8 +305,9 @@ impl FarField {
 }
 
 /// Lays the charges of the points in `range` on the grid of their box.
-fn spread<K: Far>(
+fn spread(
     operators: &Operators,
+    fields: Fields,
     cube: Cube,
     points: &SortedPoints,
     charges: &Charges,
@@ -301,14 +315,14 @@ fn spread<K: Far>(
     grid: &mut [f64],
 ) {
     let window = &operators.window;
-    let grid = &mut grid[..K::DENSITIES * operators.shape.field()];
+    let grid = &mut grid[..fields.densities * operators.shape.field()];
     let positions = points.positions.each_ref().map(|x| &x[range.clone()]);
     let charge = |density: usize| &charges[density][range.clone()];
     let dipole = |density: usize| {
-        [0, 1, 2].map(|axis| &charges[K::DENSITIES + 3 * density + axis][range.clone()])
+        [0, 1, 2].map(|axis| &charges[fields.densities + 3 * density + axis][range.clone()])
     };
     let none: [&[f64]; 3] = [&[]; 3];
-    match (K::DENSITIES, K::DIPOLES) {
+    match (fields.densities, fields.dipoles) {
         (1, false) => {
             gridding::spread::<1, false>(window, cube, positions, [charge(0)], [none], grid)
         }
@@ -338,15 +352,16 @@ fn spread<K: Far>(
 }
 
 /// Potentials of a box's grid at points in it.
-fn interpolate<K: Far>(
+fn interpolate(
     operators: &Operators,
+    fields: Fields,
     cube: Cube,
     positions: [&[f64]; 3],
     grid: &[f64],
     values: &mut [f64],
 ) {
     let window = &operators.window;
-    match (K::POTENTIALS, K::GRADIENTS) {
+    match (fields.potentials, fields.gradients) {
         (1, false) => gridding::interpolate::<1, false>(window, cube, positions, grid, values),
         (1, true) => gridding::interpolate::<1, true>(window, cube, positions, grid, values),
         (3, false) => gridding::interpolate::<3, false>(window, cube, positions, grid, values),

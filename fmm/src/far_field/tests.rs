@@ -47,11 +47,23 @@ fn charges() {
             let mut grids = Grids::default();
             let x = |i: usize| [0, 1, 2].map(|axis| tree.sources.positions[axis][i]);
             let charges = vec![(0..600).map(|i| (i as f64).sin()).collect::<Vec<f64>>()];
-            far.fill::<Laplace<4>>(&operators, &tree, &charges, &mut grids);
+            far.fill(
+                &operators,
+                Fields::of::<Laplace<4>>(),
+                &tree,
+                &charges,
+                &mut grids,
+            );
             let mut worst = [0.0f64; 4];
             let mut size = [0.0f64; 4];
             let mut out = vec![vec![0.0; 600]; 4];
-            far.read::<Laplace<4>>(&operators, &tree, &grids, &mut out);
+            far.read(
+                &operators,
+                Fields::of::<Laplace<4>>(),
+                &tree,
+                &grids,
+                &mut out,
+            );
             for leaf in &tree.leaves {
                 for target in leaf.targets.clone() {
                     let mut exact = [0.0; 4];

@@ -48,17 +48,6 @@ pub enum Output {
     Gradient,
 }
 
-impl Output {
-    /// Numbers per target.
-    pub(crate) fn count(self) -> usize {
-        match self {
-            Self::Velocity => 3,
-            Self::Pressure => 4,
-            Self::Gradient => 13,
-        }
-    }
-}
-
 /// The flow at the targets. What was not asked for is empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Flow {

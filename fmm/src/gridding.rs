@@ -12,11 +12,6 @@ use crate::window::Window;
 /// The widest window: two registers of AVX-512.
 pub(crate) const WIDEST: usize = 2 * PADDING;
 
-/// Numbers in the buffer of a grid of `densities` densities, `points` $= g$ per axis.
-pub(crate) fn grid_len(points: usize, densities: usize) -> usize {
-    densities * points * points * padded(points)
-}
-
 /// A box, for what happens inside.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cube {
@@ -463,6 +458,11 @@ mod tests {
     use fastrand::Rng;
 
     use super::*;
+
+    /// Numbers in the buffer of a grid of `densities` densities, `points` $= g$ per axis.
+    fn grid_len(points: usize, densities: usize) -> usize {
+        densities * points * points * padded(points)
+    }
 
     const CUBE: Cube = Cube {
         center: [0.3, -1.1, 2.0],

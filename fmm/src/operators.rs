@@ -6,7 +6,7 @@ use crate::across::Across;
 use crate::error::FmmError;
 use crate::far::Far;
 use crate::parameters::Parameters;
-use crate::splitting::{ROOT_PERIOD, ROOT_RADIUS, Splitting};
+use crate::splitting::{ROOT_PERIOD, Splitting};
 use crate::symbol::Symbol;
 use crate::transfer::{GridShape, Transfer};
 use crate::transform::{AxisWaves, Ball, Transform};
@@ -50,21 +50,19 @@ impl Operators {
         let window = Window::new(parameters.width, parameters.points, parameters.waves);
         let terms = K::symbol();
         let cutoff = 2.0 * splitting.bandwidth();
-        let across = |spacing: f64, radius: Option<f64>, biharmonic: &dyn Fn(f64) -> f64| {
+        let across = |spacing: f64, free_space: bool, biharmonic: &dyn Fn(f64) -> f64| {
             let ball = Ball::new(cutoff / spacing);
             let waves: Vec<f64> = (0..ball.waves).map(|j| spacing * j as f64).collect();
             let matrix = window.waves_matrix(&waves);
             let axis = AxisWaves::new(parameters.points, ball.waves, [matrix.even, matrix.odd]);
-            let symbol = Symbol::new(&terms, &ball, spacing, radius, biharmonic);
+            let symbol = Symbol::new(&terms, &ball, spacing, free_space, biharmonic);
             Across {
                 transform: Transform { ball, axis },
                 symbol,
             }
         };
-        let level = across(2.0 * PI / 3.0, None, &|k| splitting.difference(k));
-        let root = across(2.0 * PI / ROOT_PERIOD, Some(ROOT_RADIUS), &|k| {
-            splitting.free_space(k)
-        });
+        let level = across(2.0 * PI / 3.0, false, &|k| splitting.difference(k));
+        let root = across(2.0 * PI / ROOT_PERIOD, true, &|k| splitting.free_space(k));
         let transfer = Transfer::new(parameters.points, window.reach(), &window.transfer());
         let needed = K::ORDERS[0]..=K::ORDERS[1];
         let mollified = [1, 2, 3, 4].map(|order| {

@@ -11,9 +11,6 @@ use panel_quadrature::GaussLegendre;
 use crate::polynomial::{self, Sample};
 use crate::prolate::Prolate;
 
-/// Orders of the radial chain: $\beta_n = (\frac1r\frac d{dr})^n B$, $n = 1..4$.
-pub(crate) const ORDERS: usize = 4;
-
 /// Radius $R$ at which [`Splitting::free_space`] cuts $B$ off, in sides of the root: the diagonal of a cube and the reach
 /// of the mollifier of $B_{L_0/2}$.
 pub(crate) const ROOT_RADIUS: f64 = 1.7320508075688772 + 0.5;
@@ -52,11 +49,6 @@ impl Splitting {
     /// $c$: the mollified part has no waves beyond $c/L$.
     pub fn bandwidth(&self) -> f64 {
         self.psi.bandwidth()
-    }
-
-    /// $\psi(1)/\psi(0)$, the size of what both cut-offs leave out.
-    pub fn truncation(&self) -> f64 {
-        self.psi.value(1.0)
     }
 
     /// $\gamma(kL) = \psi(x) - x\psi'(x)/2$ at $x = kL/c \le 1$; 0 beyond. The transform of $B_L$ is $-\gamma(kL)/k^4$.
@@ -198,6 +190,9 @@ fn truncated_distance(x: f64) -> f64 {
 mod tests {
     use super::*;
 
+    /// Orders of the radial chain.
+    const ORDERS: usize = 4;
+
     #[expect(clippy::excessive_precision)]
     /// Waves, $t$, $b_1..b_4$: from $\Phi$, $\psi$, $\psi'$, $\psi''$ in closed form, mpmath with 60 digits.
     const CHAIN: [(usize, f64, [f64; ORDERS]); 6] = [
@@ -329,7 +324,7 @@ mod tests {
                 let left = splitting.mollified(order, 1.0) / singular(order, 1.0) - 1.0;
                 // At its end the n-th derivative of psi is about (c^2/2)^n psi.
                 let bound =
-                    splitting.truncation() * splitting.bandwidth().powi(2 * order as i32 - 2);
+                    splitting.psi.value(1.0) * splitting.bandwidth().powi(2 * order as i32 - 2);
                 assert!(left.abs() < bound + 1e-11, "{waves} {order}: {left:e}");
             }
         }

@@ -10,6 +10,7 @@ use std::f64::consts::PI;
 use f64_lanes::Lanes;
 use pulp::Simd;
 
+use crate::splitting::{ROOT_CHARGE, ROOT_STOKESLET};
 use crate::transform::{BATCH, Ball, CLASSES};
 
 /// A product of the symbol: potential = $\pm$ derivative along `axes` of (table times density).
@@ -25,8 +26,7 @@ pub(crate) struct Term {
     pub polynomial: fn([f64; 3]) -> f64,
     /// Degree of the polynomial.
     pub degree: i32,
-    /// What a box of side 1 gets from the sum of the densities to make up for the quadratic part that was
-    /// taken from $B$ at infinity, times the radius of truncation.
+    /// What the root, of side 1, gets from the sum of the density to make up for the cut of $B$ in free space.
     pub constant: f64,
 }
 
@@ -61,7 +61,7 @@ pub(crate) fn stokes(flux: bool, pressure: bool) -> Vec<Term> {
                     sign: 1.0,
                     polynomial: across[i],
                     degree: 2,
-                    constant: 0.25 / PI,
+                    constant: -ROOT_STOKESLET,
                 }
             } else {
                 Term {
@@ -103,7 +103,7 @@ pub(crate) fn laplace() -> Vec<Term> {
         sign: 1.0,
         polynomial: square,
         degree: 2,
-        constant: 0.375 / PI,
+        constant: -ROOT_CHARGE,
     }]
 }
 
@@ -124,12 +124,12 @@ struct Weighted {
 
 impl Symbol {
     /// Waves `spacing` times $j$, with `biharmonic(k)` the transform of the part of $B$ in question, $-\Gamma/k^4$; in the
-    /// free-space case $B$ is truncated at `radius`, and what its quadratic part did is put back.
+    /// `free_space` case $B$ is cut off, and what that does is put back.
     pub fn new(
         terms: &[Term],
         ball: &Ball,
         spacing: f64,
-        radius: Option<f64>,
+        free_space: bool,
         biharmonic: impl Fn(f64) -> f64,
     ) -> Self {
         let cell = (spacing / (2.0 * PI)).powi(3);
@@ -139,7 +139,7 @@ impl Symbol {
                     let k = j.map(|j| spacing * j as f64);
                     let length = square(k).sqrt();
                     if length == 0.0 {
-                        return radius.map_or(0.0, |radius| term.constant / radius);
+                        return if free_space { term.constant } else { 0.0 };
                     }
                     // Each wave stands for its mirror images too.
                     let images: f64 = j.map(|j| if j == 0 { 1.0 } else { 2.0 }).iter().product();

@@ -7,7 +7,6 @@ mod sorting;
 #[cfg(test)]
 mod tests;
 
-use std::cmp::Ordering;
 use std::ops::Range;
 
 use rayon::prelude::*;
@@ -16,9 +15,9 @@ use root::Root;
 use sorting::Keys;
 
 /// No such box.
-pub(crate) const NONE: u32 = u32::MAX;
+const NONE: u32 = u32::MAX;
 /// Colleagues a box can have, itself included.
-pub(crate) const COLLEAGUES: usize = 27;
+const COLLEAGUES: usize = 27;
 /// Points that are enough to choose the side of the root by,
 const SAMPLE: usize = 1 << 15;
 /// of no more than one of so many.
@@ -88,15 +87,10 @@ pub(crate) struct GriddedBox {
     pub children: Range<u32>,
     /// Its children without grids, as indices of `Tree::leaves`.
     pub leaves: Range<u32>,
-    /// The gridded boxes of its level around it, itself in the middle: at $d_x + 1 + 3 (d_y + 1) + 9 (d_z + 1)$
-    /// the one whose place is $d$ further, or [`NONE`].
-    pub colleagues: [u32; COLLEAGUES],
 }
 
 #[derive(Clone, Debug)]
 pub(crate) struct Leaf {
-    /// Side of the cell, the reach of the residual between its own points.
-    pub side: f64,
     pub sources: Range<u32>,
     pub targets: Range<u32>,
     /// What its targets see directly, the leaf itself included, in the order of the sources.
@@ -227,28 +221,4 @@ impl Costs {
             point: self.point * stride,
         }
     }
-}
-
-impl Level {
-    /// Index of the box at a place.
-    pub fn find(&self, place: [i64; 3]) -> Option<u32> {
-        self.boxes
-            .binary_search_by(|one| morton(one.place, place))
-            .ok()
-            .map(|i| i as u32)
-    }
-}
-
-/// Order of two places along the Morton curve, z the slowest.
-fn morton(a: [i64; 3], b: [i64; 3]) -> Ordering {
-    let differs = |axis: usize| (a[axis] ^ b[axis]) as u64;
-    let mut slowest = 2;
-    for axis in [1, 0] {
-        let (candidate, best) = (differs(axis), differs(slowest));
-        // The highest bit of `candidate` is above that of `best`.
-        if best < candidate && best < (best ^ candidate) {
-            slowest = axis;
-        }
-    }
-    a[slowest].cmp(&b[slowest])
 }

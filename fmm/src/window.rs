@@ -19,7 +19,6 @@ pub(crate) struct Window {
     points: usize,
     /// No waves beyond: $K = 2\pi J/3$.
     cutoff: f64,
-    waves: usize,
     values: PiecewisePolynomial,
 }
 
@@ -46,7 +45,6 @@ impl Window {
             width,
             points,
             cutoff,
-            waves,
             values,
         }
     }
@@ -77,11 +75,6 @@ impl Window {
         let width = self.width as f64;
         let x = 0.5 * k * self.spacing() * width / self.psi.bandwidth();
         width * self.psi.integral(1.0) * self.psi.value(x)
-    }
-
-    /// The waves of differences, $k_j = 2\pi j/3$, $0 \le j < J$, in box units.
-    pub fn waves(&self) -> Vec<f64> {
-        (0..self.waves).map(|j| 2.0 * PI / 3.0 * j as f64).collect()
     }
 
     /// From the grid to these waves.
@@ -272,7 +265,7 @@ mod tests {
     fn spreads_waves() {
         for (width, points, waves, bound) in SETS {
             let window = Window::new(width, points, waves);
-            let k = window.waves();
+            let k: Vec<f64> = (0..waves).map(|j| 2.0 * PI / 3.0 * j as f64).collect();
             let matrix = window.waves_matrix(&k);
             let worst = (0..=400)
                 .map(|i| i as f64 / 400.0 - 0.5)

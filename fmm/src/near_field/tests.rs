@@ -85,7 +85,6 @@ fn tree(
         })
     };
     let leaves = (0..cells.pow(3)).map(|i| Leaf {
-        side,
         sources: range(&source_starts, i),
         targets: targets
             .as_ref()

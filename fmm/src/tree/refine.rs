@@ -32,7 +32,8 @@ pub(super) struct Cell {
     pub place: [i64; 3],
     pub sources: Range<u32>,
     pub targets: Range<u32>,
-    /// Cells of its level around it; see [`GriddedBox::colleagues`].
+    /// Cells of its level around it, itself in the middle: at $d_x + 1 + 3 (d_y + 1) + 9 (d_z + 1)$ the one whose place is $d$ further,
+    /// or [`NONE`].
     pub colleagues: [u32; COLLEAGUES],
     /// In the level below; empty if a grid cannot pay.
     pub children: Range<u32>,
@@ -253,7 +254,6 @@ impl Cells {
         for (depth, cells) in self.levels.iter().enumerate() {
             let side = root.side(depth);
             let leaf = |cell: &Cell| Leaf {
-                side,
                 sources: cell.sources.clone(),
                 targets: cell.targets.clone(),
                 near: Vec::new(),
@@ -312,11 +312,6 @@ impl Cells {
             targets: cell.targets.clone(),
             children,
             leaves,
-            colleagues: cell.colleagues.map(|colleague| {
-                self.levels[level]
-                    .get(colleague as usize)
-                    .map_or(NONE, |colleague| index(colleague.role))
-            }),
         }
     }
 }

@@ -93,15 +93,6 @@ fn check_boxes(tree: &Tree) {
     for (depth, level) in tree.levels.iter().enumerate() {
         assert_eq!(level.side, tree.levels[0].side / 2f64.powi(depth as i32));
         for (i, one) in level.boxes.iter().enumerate() {
-            assert_eq!(level.find(one.place), Some(i as u32));
-            for slot in 0..COLLEAGUES {
-                let place = [
-                    one.place[0] + (slot % 3) as i64 - 1,
-                    one.place[1] + (slot / 3 % 3) as i64 - 1,
-                    one.place[2] + (slot / 9) as i64 - 1,
-                ];
-                assert_eq!(level.find(place).unwrap_or(NONE), one.colleagues[slot]);
-            }
             // Centres are exact: sums without rounding give their differences.
             for axis in 0..3 {
                 let steps = (2 * one.place[axis] + 1) as f64 - 2f64.powi(depth as i32);
@@ -135,7 +126,6 @@ fn check_boxes(tree: &Tree) {
                 family.push((child_box.sources.clone(), child_box.targets.clone()));
             }
             for leaf in &tree.leaves[usizes(&one.leaves)] {
-                assert_eq!(leaf.side, 0.5 * level.side);
                 assert!(!leaf.sources.is_empty() || !leaf.targets.is_empty());
                 family.push((leaf.sources.clone(), leaf.targets.clone()));
             }
@@ -171,6 +161,12 @@ fn check_pairs(tree: &Tree) {
         .map(|i| boxes_of(tree, i, |one| &one.targets))
         .collect();
     let mut pairs = 0.0;
+    let mut sides = vec![0.0; tree.leaves.len()];
+    for level in &tree.levels {
+        for one in &level.boxes {
+            sides[usizes(&one.leaves)].fill(0.5 * level.side);
+        }
+    }
     for i in 0..targets {
         let leaf = &tree.leaves[target_leaves[i]];
         for j in 0..sources {
@@ -180,7 +176,7 @@ fn check_pairs(tree: &Tree) {
                         .powi(2)
                 })
                 .sum();
-            let length = leaf.side.max(tree.leaves[source_leaves[j]].side);
+            let length = sides[target_leaves[i]].max(sides[source_leaves[j]]);
             pairs += f64::from(u8::from(r2 < length * length));
             let found: Vec<_> = leaf
                 .near
@@ -197,9 +193,9 @@ fn check_pairs(tree: &Tree) {
             // Differences telescope from the root's to half the side of the last box, unless the pair is beyond.
             let mut remaining = tree.levels[0].side / 2.0;
             for level in 1..source_boxes[j].len().min(target_boxes[i].len()) {
-                let colleagues =
-                    &tree.levels[level].boxes[target_boxes[i][level] as usize].colleagues;
-                if !colleagues.contains(&source_boxes[j][level]) {
+                let place = |number: u32| tree.levels[level].boxes[number as usize].place;
+                let (a, b) = (place(target_boxes[i][level]), place(source_boxes[j][level]));
+                if (0..3).any(|axis| (a[axis] - b[axis]).abs() > 1) {
                     assert!(r2 >= (tree.levels[level].side).powi(2) * (1.0 - 1e-12));
                     break;
                 }

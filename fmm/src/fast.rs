@@ -164,6 +164,11 @@ impl StokesSum {
         })
     }
 
+    /// What the sums are accurate to, relative in the Euclidean norm over all targets, in each output by itself.
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
     /// The flow of sources of these strengths at the targets.
     ///
     /// # Errors

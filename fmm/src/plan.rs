@@ -109,16 +109,18 @@ impl<K: Far> Plan<K> {
 
     /// Charges and dipoles of all sources.
     fn charges(&self, strengths: &[Vec<f64>]) -> Charges {
+        const BLOCK: usize = 4096;
         let count = self.tree.sources.order.len();
         let columns = if K::DIPOLES { 4 } else { 1 } * K::DENSITIES;
         let mut charges = vec![vec![0.0; count]; columns];
-        const BLOCK: usize = 4096;
-        let mut blocks: Vec<Vec<&mut [f64]>> =
-            (0..count.div_ceil(BLOCK)).map(|_| Vec::new()).collect();
+        let mut blocks: Vec<Vec<&mut [f64]>> = Vec::new();
+        blocks.resize_with(count.div_ceil(BLOCK), Vec::new);
         for column in &mut charges {
-            for (block, part) in blocks.iter_mut().zip(column.chunks_mut(BLOCK)) {
-                block.push(part);
-            }
+            let parts = column.chunks_mut(BLOCK);
+            blocks
+                .iter_mut()
+                .zip(parts)
+                .for_each(|(block, part)| block.push(part));
         }
         blocks
             .par_iter_mut()
@@ -126,16 +128,14 @@ impl<K: Far> Plan<K> {
             .for_each(|(number, block)| {
                 let mut strength = [0.0; MOST];
                 for i in 0..block[0].len() {
-                    for (number_of, column) in strengths.iter().enumerate() {
-                        strength[number_of] = column[number * BLOCK + i];
+                    for (value, column) in strength.iter_mut().zip(strengths) {
+                        *value = column[number * BLOCK + i];
                     }
                     let (charge, dipole) = K::charges(&strength);
                     for density in 0..K::DENSITIES {
                         block[density][i] = charge[density];
-                        if K::DIPOLES {
-                            for axis in 0..3 {
-                                block[K::DENSITIES + 3 * density + axis][i] = dipole[density][axis];
-                            }
+                        for axis in 0..if K::DIPOLES { 3 } else { 0 } {
+                            block[K::DENSITIES + 3 * density + axis][i] = dipole[density][axis];
                         }
                     }
                 }

@@ -371,3 +371,90 @@ impl WithIsa for Sweep<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Waves of a field `[class of x][class of y][wave][class of z]` of a box, moved by one place along an axis.
+    fn moved(field: &[f64], ball: &Ball, step: Place) -> Vec<f64> {
+        let mut field = field.to_vec();
+        let at = |wave: usize, class: [usize; 3]| {
+            ((2 * class[0] + class[1]) * ball.len + wave) * 2 + class[2]
+        };
+        for axis in 0..3 {
+            let before = field.clone();
+            for (wave, j) in ball.indices().enumerate() {
+                let phase = 2.0 * std::f64::consts::PI / 3.0 * j[axis] as f64 * step[axis] as f64;
+                for class in 0..CLASSES {
+                    let own = [class & 1, class >> 1 & 1, class >> 2];
+                    let mut other = own;
+                    other[axis] = 1 - own[axis];
+                    // cos(a - b) and sin(a - b) give and take across the classes.
+                    let sign = if own[axis] == 0 { -1.0 } else { 1.0 };
+                    field[at(wave, own)] = phase.cos() * before[at(wave, own)]
+                        + sign * phase.sin() * before[at(wave, other)];
+                }
+            }
+        }
+        field
+    }
+
+    #[test]
+    fn slabs_add_up_what_colleagues_send() {
+        let mut random = fastrand::Rng::with_seed(11);
+        let ball = Ball::new(3.5);
+        let turns = Turns::new(&ball);
+        let len = CLASSES * ball.len;
+        for spread in [3, 9] {
+            let mut places = || -> Vec<(u32, Place)> {
+                let all: BTreeSet<Place> = (0..300)
+                    .map(|_| [3, spread, spread].map(|n| random.i64(0..n)))
+                    .collect();
+                (0..).zip(all).collect()
+            };
+            let (sources, targets) = (places(), places());
+            let fields: Vec<Vec<f64>> = sources
+                .iter()
+                .map(|_| (0..len).map(|_| random.f64() - 0.5).collect())
+                .collect();
+            let mut swept: [Vec<f64>; 3] = Default::default();
+            let (mut gathered, mut waves) = (Vec::new(), vec![0.0; len * BATCH]);
+            let mut served = 0;
+            let slabs = Slab::cut(&sources, &targets);
+            assert!(slabs.len() > 1 || spread == 3);
+            for (number, slab) in slabs.iter().enumerate() {
+                let mut lanes = vec![0.0; slab.sources.len().div_ceil(BATCH) * len * BATCH];
+                for (place, &source) in slab.sources.iter().enumerate() {
+                    for (i, value) in fields[source as usize].iter().enumerate() {
+                        // One field: batches follow each other.
+                        lanes[((place / BATCH) * len + i) * BATCH + place % BATCH] = *value;
+                    }
+                }
+                swept.rotate_right(1);
+                turns.sweep(slab, 1, &lanes, &mut swept[0]);
+                let kept: Vec<&[f64]> = swept[..3.min(number + 1)].iter().map(|s| &s[..]).collect();
+                turns.gather(slab, 1, &kept, &mut gathered);
+                for (place, &target) in slab.targets.iter().enumerate() {
+                    let batches = slab.targets.len().div_ceil(BATCH);
+                    turns.batch(&gathered, 0, place / BATCH, batches, &mut waves);
+                    let mut exact = vec![0.0; len];
+                    for (source, field) in sources.iter().zip(&fields) {
+                        let step =
+                            [0, 1, 2].map(|axis| source.1[axis] - targets[target as usize].1[axis]);
+                        if step.iter().all(|step| step.abs() <= 1) {
+                            for (sum, value) in exact.iter_mut().zip(moved(field, &ball, step)) {
+                                *sum += value;
+                            }
+                        }
+                    }
+                    for (i, exact) in exact.iter().enumerate() {
+                        assert!((waves[i * BATCH + place % BATCH] - exact).abs() < 1e-13);
+                    }
+                    served += 1;
+                }
+            }
+            assert_eq!(served, targets.len());
+        }
+    }
+}

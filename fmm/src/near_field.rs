@@ -12,7 +12,7 @@
 use std::marker::PhantomData;
 use std::ops::Range;
 
-use f64_lanes::{Isa, Lanes, PADDING, Precision, WithIsa, dispatch};
+use f64_lanes::{Isa, Lanes, PADDING, Precision, WithRoots, dispatch_roots};
 use rayon::prelude::*;
 
 use crate::kernel::{Chain, MOST, Pair, UNITS, dot};
@@ -199,7 +199,7 @@ impl NearField {
         sums.par_chunks_mut(P::OUTPUTS * TILE)
             .enumerate()
             .for_each_init(List::default, |list, (tile, sums)| {
-                dispatch(TileSum::<P> {
+                let work = TileSum::<P> {
                     field: self,
                     records: &records,
                     polynomials: &polynomials,
@@ -207,7 +207,8 @@ impl NearField {
                     list,
                     sums,
                     pair: PhantomData,
-                });
+                };
+                dispatch_roots(self.precision, work);
             });
         let points = &self.targets().points;
         outputs.par_iter_mut().enumerate().for_each(|(k, output)| {
@@ -364,23 +365,24 @@ struct TileSum<'a, P> {
     pair: PhantomData<P>,
 }
 
-impl<P: Pair> WithIsa for TileSum<'_, P> {
+impl<P: Pair> WithRoots for TileSum<'_, P> {
     type Output = ();
+    const EACH_PRECISION: bool = P::EACH_PRECISION;
 
     #[inline(always)]
-    fn with_isa<S: Isa>(mut self, simd: S) {
+    fn with_roots<S: Isa, const TERMS: usize>(mut self, simd: S) {
         self.field.list(simd, self.tile, self.list);
         let mut start = 0;
         for run in 0..self.list.ends.len() {
             let (reach, end) = self.list.ends[run];
             for register in 0..TILE / Lanes::<S>::COUNT {
                 // As many chains of multiply-adds at a time as the registers bear.
-                if P::OUTPUTS > 4 {
-                    self.add_listed::<S, 1>(simd, register, reach, start..end);
+                if P::OUTPUTS > 4 || Lanes::<S>::COUNT == 1 {
+                    self.add_listed::<S, TERMS, 1>(simd, register, reach, start..end);
                 } else if P::ORDERS[1] - P::ORDERS[0] > 1 || P::STRENGTHS > 3 {
-                    self.add_listed::<S, 2>(simd, register, reach, start..end);
+                    self.add_listed::<S, TERMS, 2>(simd, register, reach, start..end);
                 } else {
-                    self.add_listed::<S, 4>(simd, register, reach, start..end);
+                    self.add_listed::<S, TERMS, 4>(simd, register, reach, start..end);
                 }
             }
             start = end;
@@ -442,7 +444,7 @@ impl NearField {
 impl<P: Pair> TileSum<'_, P> {
     /// Sums a run of the list, `TOGETHER` sources at a time.
     #[inline(always)]
-    fn add_listed<S: Isa, const TOGETHER: usize>(
+    fn add_listed<S: Isa, const TERMS: usize, const TOGETHER: usize>(
         &mut self,
         simd: S,
         register: usize,
@@ -456,7 +458,6 @@ impl<P: Pair> TileSum<'_, P> {
         let coefficients = &self.polynomials[reach][..];
         let reach2 = Lanes::splat(simd, length * length);
         let slope = Lanes::splat(simd, 2.0 / (length * length));
-        let precision = self.field.precision;
         let mut sums = [zero; MOST];
         for places in self.list.places[run].as_chunks::<TOGETHER>().0 {
             let mut records = [&self.records[..0]; TOGETHER];
@@ -474,7 +475,7 @@ impl<P: Pair> TileSum<'_, P> {
             }
             let mollified = evaluate::<S, P, TOGETHER>(simd, coefficients, &s);
             for i in 0..TOGETHER {
-                let chain = Chain::residual(r2[i], reach2, &mollified[i], precision);
+                let chain = Chain::residual::<TERMS>(r2[i], reach2, &mollified[i]);
                 P::add(&x[i], &chain, &records[i][3..], &mut sums);
             }
         }

@@ -14,7 +14,7 @@ use pulp::Simd;
 
 mod isa;
 
-pub use isa::{Isa, Precision, WithIsa, dispatch};
+pub use isa::{Isa, Precision, WithIsa, WithRoots, dispatch, dispatch_roots};
 
 /// Every vectorised buffer has a multiple of this many entries.
 pub const PADDING: usize = 8;
@@ -89,11 +89,10 @@ impl<S: Simd> Lanes<S> {
 }
 
 impl<S: Isa> Lanes<S> {
-    /// $1/\sqrt x$ to the precision asked for, where $x > 0$; 0 where $x = 0$.
+    /// $1/\sqrt x$ to `TERMS` terms (see [`Precision`]) where $x$ exceeds `least` $\ge 0$; 0 elsewhere.
     #[inline(always)]
-    pub fn rsqrt_or_zero(self, precision: Precision) -> Self {
-        let zero = Self::splat(self.0, 0.0);
-        zero.select_less(self, self.0.rsqrt(self, precision), zero)
+    pub fn rsqrt_above<const TERMS: usize>(self, least: Self) -> Self {
+        self.0.rsqrt_above::<TERMS>(self, least)
     }
 }
 

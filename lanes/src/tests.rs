@@ -1,15 +1,17 @@
 use super::*;
 
-struct Roots<'a>(&'a [f64], Precision);
+struct Roots<'a>(&'a [f64]);
 
-impl WithIsa for Roots<'_> {
+impl WithRoots for Roots<'_> {
     type Output = Vec<f64>;
+    const EACH_PRECISION: bool = true;
 
     #[inline(always)]
-    fn with_isa<S: Isa>(self, simd: S) -> Vec<f64> {
+    fn with_roots<S: Isa, const TERMS: usize>(self, simd: S) -> Vec<f64> {
         let mut roots = vec![0.0; self.0.len()];
         for index in 0..self.0.len() / Lanes::<S>::COUNT {
-            let root = Lanes::load(simd, self.0, index).rsqrt_or_zero(self.1);
+            let x = Lanes::load(simd, self.0, index);
+            let root = x.rsqrt_above::<TERMS>(Lanes::splat(simd, 0.0));
             root.store(&mut roots, index);
         }
         roots
@@ -27,7 +29,7 @@ fn reciprocal_roots_reach_their_precision() {
         (Precision::Close, 1e-12),
         (Precision::Full, 1e-15),
     ] {
-        for (x, root) in x.iter().zip(dispatch(Roots(&x, precision))) {
+        for (x, root) in x.iter().zip(dispatch_roots(precision, Roots(&x))) {
             let error = (root * root * x - 1.0).abs() / 2.0;
             assert!(error < bound, "{precision:?} of {x}: {error:e}");
         }
@@ -42,6 +44,6 @@ fn no_root_of_zero() {
         Precision::Close,
         Precision::Full,
     ] {
-        assert_eq!(dispatch(Roots(&[0.0; 8], precision)), [0.0; 8]);
+        assert_eq!(dispatch_roots(precision, Roots(&[0.0; 8])), [0.0; 8]);
     }
 }

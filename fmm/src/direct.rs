@@ -231,9 +231,21 @@ impl<P: Pair> WithRoots for ChunkSum<'_, P> {
         for block in self.records.chunks(BLOCK * (3 + P::STRENGTHS)) {
             // As many sums at a time as the registers bear.
             if P::OUTPUTS > 4 {
-                add_block::<S, P, TERMS, 1>(simd, block, &positions, self.targets.len(), self.numbers);
+                add_block::<S, P, TERMS, 1>(
+                    simd,
+                    block,
+                    &positions,
+                    self.targets.len(),
+                    self.numbers,
+                );
             } else {
-                add_block::<S, P, TERMS, 2>(simd, block, &positions, self.targets.len(), self.numbers);
+                add_block::<S, P, TERMS, 2>(
+                    simd,
+                    block,
+                    &positions,
+                    self.targets.len(),
+                    self.numbers,
+                );
             }
         }
     }

@@ -78,9 +78,9 @@ pub(crate) fn with_stokes<W: WithKernel>(
 
 /// The radial chain of one register of pairs: of the full kernels if `SINGULAR`, else of their residuals.
 pub(crate) struct Chain<S: Isa, const SINGULAR: bool> {
-    r2: Lanes<S>,
+    pub r2: Lanes<S>,
     /// $B_1, \dots, B_4$.
-    b: [Lanes<S>; 4],
+    pub b: [Lanes<S>; 4],
 }
 
 /// $1/r, \dots, 1/r^7$ of $r^2$, and zeros where $r^2$ is `least` or less.

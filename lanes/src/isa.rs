@@ -25,6 +25,9 @@ pub trait Isa: Simd {
 
     /// $1/\sqrt x$ to `TERMS` terms (see [`Precision`]) where $x$ exceeds `least` $\ge 0$; 0 elsewhere.
     fn rsqrt_above<const TERMS: usize>(self, x: Lanes<Self>, least: Lanes<Self>) -> Lanes<Self>;
+
+    /// A bit for each lane, the lowest for the first: set where $a < b$.
+    fn less_bits(self, a: Lanes<Self>, b: Lanes<Self>) -> usize;
 }
 
 /// By hardware square root and division: where there is no seed for doubles.
@@ -37,6 +40,11 @@ impl Isa for Scalar {
     const SEEDED: bool = false;
 
     #[inline(always)]
+    fn less_bits(self, a: Lanes<Self>, b: Lanes<Self>) -> usize {
+        usize::from(a.1 < b.1)
+    }
+
+    #[inline(always)]
     fn rsqrt_above<const TERMS: usize>(self, x: Lanes<Self>, least: Lanes<Self>) -> Lanes<Self> {
         divided(x, least)
     }
@@ -45,6 +53,12 @@ impl Isa for Scalar {
 #[cfg(target_arch = "x86_64")]
 impl Isa for pulp::x86::V3 {
     const SEEDED: bool = false;
+
+    #[inline(always)]
+    fn less_bits(self, a: Lanes<Self>, b: Lanes<Self>) -> usize {
+        let mask = self.less_than_f64s(a.1, b.1);
+        self.avx._mm256_movemask_pd(pulp::cast(mask)) as usize
+    }
 
     #[inline(always)]
     fn rsqrt_above<const TERMS: usize>(self, x: Lanes<Self>, least: Lanes<Self>) -> Lanes<Self> {
@@ -57,10 +71,17 @@ impl Isa for pulp::x86::V4 {
     const SEEDED: bool = true;
 
     #[inline(always)]
+    fn less_bits(self, a: Lanes<Self>, b: Lanes<Self>) -> usize {
+        usize::from(self.less_than_f64s(a.1, b.1).0)
+    }
+
+    #[inline(always)]
     fn rsqrt_above<const TERMS: usize>(self, x: Lanes<Self>, least: Lanes<Self>) -> Lanes<Self> {
         // Zero seeds stay zero.
         let above = self.less_than_f64s(least.1, x.1);
-        let seed = self.avx512f._mm512_maskz_rsqrt14_pd(above.0, pulp::cast(x.1));
+        let seed = self
+            .avx512f
+            ._mm512_maskz_rsqrt14_pd(above.0, pulp::cast(x.1));
         let seed = Lanes(self, pulp::cast(seed));
         if TERMS == 0 {
             return seed;

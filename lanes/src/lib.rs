@@ -80,6 +80,12 @@ impl<S: Simd> Lanes<S> {
         self.0.reduce_max_f64s(self.1)
     }
 
+    /// The larger of each two lanes.
+    #[inline(always)]
+    pub fn larger(self, other: Self) -> Self {
+        Self(self.0, self.0.max_f64s(self.1, other.1))
+    }
+
     /// `yes` in the lanes where `self < bound`, `no` elsewhere.
     #[inline(always)]
     pub fn select_less(self, bound: Self, yes: Self, no: Self) -> Self {
@@ -93,6 +99,12 @@ impl<S: Isa> Lanes<S> {
     #[inline(always)]
     pub fn rsqrt_above<const TERMS: usize>(self, least: Self) -> Self {
         self.0.rsqrt_above::<TERMS>(self, least)
+    }
+
+    /// A bit for each lane, the lowest for the first: set where `self < bound`.
+    #[inline(always)]
+    pub fn less_bits(self, bound: Self) -> usize {
+        self.0.less_bits(self, bound)
     }
 }
 

@@ -1,3 +1,5 @@
+use pulp::Scalar;
+
 use super::*;
 
 struct Roots<'a>(&'a [f64]);
@@ -45,5 +47,50 @@ fn no_root_of_zero() {
         Precision::Full,
     ] {
         assert_eq!(dispatch_roots(precision, Roots(&[0.0; 8])), [0.0; 8]);
+    }
+}
+
+struct Below<'a>(&'a [f64; 8], f64);
+
+impl WithIsa for Below<'_> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn with_isa<S: Isa>(self, simd: S) -> usize {
+        let mut bits = 0;
+        for index in 0..8 / Lanes::<S>::COUNT {
+            let x = Lanes::load(simd, self.0, index);
+            bits |= x.less_bits(Lanes::splat(simd, self.1)) << (index * Lanes::<S>::COUNT);
+        }
+        bits
+    }
+}
+
+#[test]
+fn bits_tell_the_lanes_below() {
+    let x = [3.0, 1.0, f64::INFINITY, 0.5, 2.0, -7.0, f64::NAN, 1.9];
+    assert_eq!(dispatch(Below(&x, 2.0)), 0b1010_1010);
+    let simd = Scalar::new();
+    let below = x.map(|x| Lanes(simd, x).less_bits(Lanes(simd, 2.0)));
+    assert_eq!(below, [0, 1, 0, 1, 0, 1, 0, 1]);
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = pulp::x86::V3::try_new() {
+        assert_eq!(
+            pulp::Simd::vectorize(simd, OnV3(Below(&x, 2.0), simd)),
+            0b1010_1010
+        );
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+struct OnV3<W>(W, pulp::x86::V3);
+
+#[cfg(target_arch = "x86_64")]
+impl<W: WithIsa> pulp::WithSimd for OnV3<W> {
+    type Output = W::Output;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> W::Output {
+        self.0.with_isa(self.1)
     }
 }

@@ -7,13 +7,13 @@
 
 use std::marker::PhantomData;
 
-use f64_lanes::{Isa, Lanes, Precision, WithIsa, dispatch};
+use f64_lanes::{Isa, Lanes, Precision, WithRoots, dispatch_roots};
 use rayon::prelude::*;
 
 use crate::FmmError;
 use crate::far::Far;
 use crate::flow::{Flow, Output, Strengths, check, check_positions};
-use crate::kernel::{Chain, Laplace, MOST, Pair, WithKernel, with_stokes};
+use crate::kernel::{Chain, Laplace, MOST, Pair, WithKernel, dot, with_stokes};
 
 /// The flow of `strengths` at `sources`, seen at `targets`, which may be the sources themselves.
 ///
@@ -146,11 +146,9 @@ pub(crate) fn records(
 }
 
 /// Targets that one task takes.
-const CHUNK: usize = 128;
+const CHUNK: usize = 192;
 /// Sources that stay in the first-level cache while the targets of a chunk pass.
 const BLOCK: usize = 256;
-/// Registers of targets that share the broadcast of a source.
-const REGISTERS: usize = 2;
 
 /// Records of sources against targets.
 pub(crate) struct Problem {
@@ -195,13 +193,13 @@ impl Problem {
             .par_chunks_mut(P::OUTPUTS * CHUNK)
             .zip(self.targets.par_chunks(CHUNK))
             .for_each(|(numbers, targets)| {
-                dispatch(ChunkSum::<P> {
+                let work = ChunkSum::<P> {
                     records: &self.records,
                     targets,
-                    precision: self.precision,
                     numbers,
                     pair: PhantomData,
-                });
+                };
+                dispatch_roots(self.precision, work);
             });
         Columns {
             outputs: P::OUTPUTS,
@@ -214,69 +212,82 @@ impl Problem {
 struct ChunkSum<'a, P> {
     records: &'a [f64],
     targets: &'a [[f64; 3]],
-    precision: Precision,
     numbers: &'a mut [f64],
     pair: PhantomData<P>,
 }
 
-impl<P: Pair> WithIsa for ChunkSum<'_, P> {
+impl<P: Pair> WithRoots for ChunkSum<'_, P> {
     type Output = ();
+    const EACH_PRECISION: bool = P::EACH_PRECISION;
 
     #[inline(always)]
-    fn with_isa<S: Isa>(self, simd: S) {
+    fn with_roots<S: Isa, const TERMS: usize>(self, simd: S) {
         let mut positions = [[0.0; CHUNK]; 3];
         for (i, target) in self.targets.iter().enumerate() {
             for axis in 0..3 {
                 positions[axis][i] = target[axis];
             }
         }
-        let tiles = self.targets.len().div_ceil(REGISTERS * Lanes::<S>::COUNT);
         for block in self.records.chunks(BLOCK * (3 + P::STRENGTHS)) {
-            for tile in 0..tiles {
-                let precision = self.precision;
-                add_block::<S, P>(simd, block, &positions, tile, precision, self.numbers);
+            // As many sums at a time as the registers bear.
+            if P::OUTPUTS > 4 {
+                add_block::<S, P, TERMS, 1>(
+                    simd,
+                    block,
+                    &positions,
+                    self.targets.len(),
+                    self.numbers,
+                );
+            } else {
+                add_block::<S, P, TERMS, 2>(
+                    simd,
+                    block,
+                    &positions,
+                    self.targets.len(),
+                    self.numbers,
+                );
             }
         }
     }
 }
 
-/// A block of sources against the `REGISTERS` registers of targets number `tile`.
+/// A block of sources against all targets, `REGISTERS` registers of which share the broadcast of a source.
 #[inline(always)]
-fn add_block<S: Isa, P: Pair>(
+fn add_block<S: Isa, P: Pair, const TERMS: usize, const REGISTERS: usize>(
     simd: S,
     block: &[f64],
     positions: &[[f64; CHUNK]; 3],
-    tile: usize,
-    precision: Precision,
+    count: usize,
     numbers: &mut [f64],
 ) {
     let zero = Lanes::splat(simd, 0.0);
     let least = Lanes::splat(simd, LEAST);
-    let mut targets = [[zero; 3]; REGISTERS];
-    for register in 0..REGISTERS {
-        for axis in 0..3 {
-            let index = tile * REGISTERS + register;
-            targets[register][axis] = Lanes::load(simd, &positions[axis], index);
-        }
-    }
-    let mut sums = [[zero; MOST]; REGISTERS];
-    for record in block.chunks_exact(3 + P::STRENGTHS) {
+    for tile in 0..count.div_ceil(REGISTERS * Lanes::<S>::COUNT) {
+        let mut targets = [[zero; 3]; REGISTERS];
         for register in 0..REGISTERS {
-            let target = &targets[register];
-            let x = [
-                target[0] - record[0],
-                target[1] - record[1],
-                target[2] - record[2],
-            ];
-            let r2 = crate::kernel::dot(&x, &x);
-            let chain = Chain::full(r2, least, precision);
-            P::add(&x, &chain, &record[3..], &mut sums[register]);
+            for axis in 0..3 {
+                let index = tile * REGISTERS + register;
+                targets[register][axis] = Lanes::load(simd, &positions[axis], index);
+            }
         }
-    }
-    for register in 0..REGISTERS {
-        for output in 0..P::OUTPUTS {
-            let index = tile * REGISTERS + register + output * (CHUNK / Lanes::<S>::COUNT);
-            (Lanes::load(simd, numbers, index) + sums[register][output]).store(numbers, index);
+        let mut sums = [[zero; MOST]; REGISTERS];
+        for record in block.chunks_exact(3 + P::STRENGTHS) {
+            for register in 0..REGISTERS {
+                let target = &targets[register];
+                let x = [
+                    target[0] - record[0],
+                    target[1] - record[1],
+                    target[2] - record[2],
+                ];
+                let chain = Chain::full::<TERMS>(dot(&x, &x), least);
+                P::add(&x, &chain, &record[3..], &mut sums[register]);
+            }
+        }
+        for register in 0..REGISTERS {
+            for output in 0..P::OUTPUTS {
+                let index = tile * REGISTERS + register + output * (CHUNK / Lanes::<S>::COUNT);
+                (Lanes::load(simd, numbers, index) + sums[register][output]).store(numbers, index);
+            }
         }
     }
 }

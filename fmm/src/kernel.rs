@@ -6,7 +6,7 @@
 
 use crate::far::Far;
 use crate::flow::{Output, Singularities};
-use f64_lanes::{Isa, Lanes, Precision};
+use f64_lanes::{Isa, Lanes};
 
 mod laplace;
 mod stokes;
@@ -33,6 +33,8 @@ pub(crate) trait Pair: Copy + Send + Sync + 'static {
     const ORDERS: [usize; 2];
     /// Factors that the strengths are multiplied by before [`add`](Self::add) sees them.
     const FACTORS: [f64; MOST];
+    /// Whether sums are compiled for each precision of roots: where these are a good part of the work.
+    const EACH_PRECISION: bool = Self::OUTPUTS <= 3 && Self::STRENGTHS <= 9;
 
     /// Adds to `out` what a source of this `strength` does at distances `x` (target minus source).
     fn add<S: Isa, const SINGULAR: bool>(
@@ -76,16 +78,15 @@ pub(crate) fn with_stokes<W: WithKernel>(
 
 /// The radial chain of one register of pairs: of the full kernels if `SINGULAR`, else of their residuals.
 pub(crate) struct Chain<S: Isa, const SINGULAR: bool> {
-    r2: Lanes<S>,
+    pub r2: Lanes<S>,
     /// $B_1, \dots, B_4$.
-    b: [Lanes<S>; 4],
+    pub b: [Lanes<S>; 4],
 }
 
 /// $1/r, \dots, 1/r^7$ of $r^2$, and zeros where $r^2$ is `least` or less.
 #[inline(always)]
-fn powers<S: Isa>(r2: Lanes<S>, least: Lanes<S>, precision: Precision) -> [Lanes<S>; 4] {
-    let zero = Lanes::splat(r2.0, 0.0);
-    let inverse = least.select_less(r2, r2.0.rsqrt(r2, precision), zero);
+fn powers<S: Isa, const TERMS: usize>(r2: Lanes<S>, least: Lanes<S>) -> [Lanes<S>; 4] {
+    let inverse = r2.rsqrt_above::<TERMS>(least);
     let square = inverse * inverse;
     let cube = square * inverse;
     let fifth = square * cube;
@@ -95,10 +96,10 @@ fn powers<S: Isa>(r2: Lanes<S>, least: Lanes<S>, precision: Precision) -> [Lanes
 impl<S: Isa> Chain<S, true> {
     /// The full chain, without the pairs whose $r^2$ is `least` or less.
     #[inline(always)]
-    pub fn full(r2: Lanes<S>, least: Lanes<S>, precision: Precision) -> Self {
+    pub fn full<const TERMS: usize>(r2: Lanes<S>, least: Lanes<S>) -> Self {
         Self {
             r2,
-            b: powers(r2, least, precision),
+            b: powers::<S, TERMS>(r2, least),
         }
     }
 }
@@ -106,14 +107,13 @@ impl<S: Isa> Chain<S, true> {
 impl<S: Isa> Chain<S, false> {
     /// The full chain minus `mollified`, zero from $r^2$ = `reach2` on. Where $r = 0$ only the full part is left out.
     #[inline(always)]
-    pub fn residual(
+    pub fn residual<const TERMS: usize>(
         r2: Lanes<S>,
         reach2: Lanes<S>,
         mollified: &[Lanes<S>; 4],
-        precision: Precision,
     ) -> Self {
         let zero = Lanes::splat(r2.0, 0.0);
-        let mut b = powers(r2, zero, precision);
+        let mut b = powers::<S, TERMS>(r2, zero);
         for order in 0..4 {
             b[order] = r2.select_less(reach2, b[order] - mollified[order], zero);
         }

@@ -12,7 +12,7 @@
 use std::marker::PhantomData;
 use std::ops::Range;
 
-use f64_lanes::{Isa, Lanes, PADDING, Precision, WithIsa, dispatch};
+use f64_lanes::{Isa, Lanes, PADDING, Precision, WithRoots, dispatch_roots};
 use rayon::prelude::*;
 
 use crate::kernel::{Chain, MOST, Pair, UNITS, dot};
@@ -20,8 +20,10 @@ use crate::tree::{SortedPoints, Tree};
 
 /// Points per tile: one register of the widest instruction set.
 const TILE: usize = PADDING;
-/// Lists are filled up to a multiple of this many sources.
+/// Sources whose polynomials are evaluated together: lists are filled up to a multiple of this many.
 const TOGETHER: usize = 4;
+/// Sources whose chains are made before any of them is used: the sums then have the registers for themselves.
+const BLOCK: usize = 16;
 /// Place in a tile that no point holds.
 const VACANT: u32 = u32::MAX;
 
@@ -199,7 +201,7 @@ impl NearField {
         sums.par_chunks_mut(P::OUTPUTS * TILE)
             .enumerate()
             .for_each_init(List::default, |list, (tile, sums)| {
-                dispatch(TileSum::<P> {
+                let work = TileSum::<P> {
                     field: self,
                     records: &records,
                     polynomials: &polynomials,
@@ -207,7 +209,8 @@ impl NearField {
                     list,
                     sums,
                     pair: PhantomData,
-                });
+                };
+                dispatch_roots(self.precision, work);
             });
         let points = &self.targets().points;
         outputs.par_iter_mut().enumerate().for_each(|(k, output)| {
@@ -296,26 +299,22 @@ impl Bounds {
         reach2: f64,
     ) -> usize {
         let zero = Lanes::splat(simd, 0.0);
-        let mut bits = zero;
+        let mut bits = 0;
         for register in 0..TILE / Lanes::<S>::COUNT {
             let mut square = zero;
             for axis in 0..3 {
                 let low = Lanes::load(simd, &low[axis][first..first + TILE], register);
                 let high = Lanes::load(simd, &high[axis][first..first + TILE], register);
                 let (below, above) = (self.low[axis] - high, low - self.high[axis]);
-                let gap = above.select_less(below, below, above);
-                let gap = zero.select_less(gap, gap, zero);
+                let gap = below.larger(above).larger(zero);
                 square = gap.mul_add(gap, square);
             }
-            let bit = Lanes::load(simd, &BITS, register);
-            bits += square.select_less(Lanes::splat(simd, reach2), bit, zero);
+            let near = square.less_bits(Lanes::splat(simd, reach2));
+            bits |= near << (register * Lanes::<S>::COUNT);
         }
-        bits.sum() as usize
+        bits
     }
 }
-
-/// $2^i$: sums of them are bit masks, which have no instruction of their own here.
-const BITS: [f64; TILE] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0];
 
 /// For each byte the places of its bits that are set, lowest first.
 const PLACES: [[u8; TILE]; 256] = {
@@ -364,24 +363,18 @@ struct TileSum<'a, P> {
     pair: PhantomData<P>,
 }
 
-impl<P: Pair> WithIsa for TileSum<'_, P> {
+impl<P: Pair> WithRoots for TileSum<'_, P> {
     type Output = ();
+    const EACH_PRECISION: bool = P::EACH_PRECISION;
 
     #[inline(always)]
-    fn with_isa<S: Isa>(mut self, simd: S) {
+    fn with_roots<S: Isa, const TERMS: usize>(mut self, simd: S) {
         self.field.list(simd, self.tile, self.list);
         let mut start = 0;
         for run in 0..self.list.ends.len() {
             let (reach, end) = self.list.ends[run];
             for register in 0..TILE / Lanes::<S>::COUNT {
-                // As many chains of multiply-adds at a time as the registers bear.
-                if P::OUTPUTS > 4 {
-                    self.add_listed::<S, 1>(simd, register, reach, start..end);
-                } else if P::ORDERS[1] - P::ORDERS[0] > 1 || P::STRENGTHS > 3 {
-                    self.add_listed::<S, 2>(simd, register, reach, start..end);
-                } else {
-                    self.add_listed::<S, 4>(simd, register, reach, start..end);
-                }
+                self.add_listed::<S, TERMS>(simd, register, reach, start..end);
             }
             start = end;
         }
@@ -440,9 +433,9 @@ impl NearField {
 }
 
 impl<P: Pair> TileSum<'_, P> {
-    /// Sums a run of the list, `TOGETHER` sources at a time.
+    /// Sums a run of the list, block by block.
     #[inline(always)]
-    fn add_listed<S: Isa, const TOGETHER: usize>(
+    fn add_listed<S: Isa, const TERMS: usize>(
         &mut self,
         simd: S,
         register: usize,
@@ -452,30 +445,33 @@ impl<P: Pair> TileSum<'_, P> {
         let zero = Lanes::splat(simd, 0.0);
         let registers = TILE / Lanes::<S>::COUNT;
         let target = self.field.target(simd, self.tile, register);
-        let length = self.field.reaches[reach];
-        let coefficients = &self.polynomials[reach][..];
-        let reach2 = Lanes::splat(simd, length * length);
-        let slope = Lanes::splat(simd, 2.0 / (length * length));
-        let precision = self.field.precision;
+        let residual = Residual {
+            coefficients: &self.polynomials[reach],
+            length: self.field.reaches[reach],
+        };
+        let mut chains = Chains {
+            r2: [zero; BLOCK],
+            b: [[zero; BLOCK]; 4],
+        };
         let mut sums = [zero; MOST];
-        for places in self.list.places[run].as_chunks::<TOGETHER>().0 {
-            let mut records = [&self.records[..0]; TOGETHER];
-            let mut x = [[zero; 3]; TOGETHER];
-            let mut r2 = [zero; TOGETHER];
-            let mut s = [zero; TOGETHER];
-            for i in 0..TOGETHER {
-                let start = places[i] as usize * (3 + P::STRENGTHS);
-                records[i] = &self.records[start..start + 3 + P::STRENGTHS];
-                for axis in 0..3 {
-                    x[i][axis] = target[axis] - records[i][axis];
-                }
-                r2[i] = dot(&x[i], &x[i]);
-                s[i] = r2[i].mul_add(slope, Lanes::splat(simd, -1.0));
+        for places in self.list.places[run].chunks(BLOCK) {
+            for (i, places) in places.as_chunks().0.iter().enumerate() {
+                residual.chains::<S, P, TERMS>(
+                    &target,
+                    self.records,
+                    places,
+                    TOGETHER * i,
+                    &mut chains,
+                );
             }
-            let mollified = evaluate::<S, P, TOGETHER>(simd, coefficients, &s);
-            for i in 0..TOGETHER {
-                let chain = Chain::residual(r2[i], reach2, &mollified[i], precision);
-                P::add(&x[i], &chain, &records[i][3..], &mut sums);
+            for (i, &place) in places.iter().enumerate() {
+                let record = record::<P>(self.records, place);
+                let b = &chains.b;
+                let chain = Chain::<S, false> {
+                    r2: chains.r2[i],
+                    b: [b[0][i], b[1][i], b[2][i], b[3][i]],
+                };
+                P::add(&distance(&target, record), &chain, &record[3..], &mut sums);
             }
         }
         for output in 0..P::OUTPUTS {
@@ -502,24 +498,77 @@ impl NearField {
     }
 }
 
-/// The polynomials of the orders that `P` needs, by Horner's scheme.
+/// Chains of a block of sources and one register of targets, order by order.
+struct Chains<S: Isa> {
+    r2: [Lanes<S>; BLOCK],
+    b: [[Lanes<S>; BLOCK]; 4],
+}
+
+/// Target minus source.
 #[inline(always)]
-fn evaluate<S: Isa, P: Pair, const TOGETHER: usize>(
-    simd: S,
-    coefficients: &[f64],
-    s: &[Lanes<S>; TOGETHER],
-) -> [[Lanes<S>; 4]; TOGETHER] {
-    let [first, last] = P::ORDERS;
-    let mut values = [[Lanes::splat(simd, 0.0); 4]; TOGETHER];
-    for term in coefficients.chunks_exact(1 + last - first) {
-        for order in first..=last {
-            let coefficient = Lanes::splat(simd, term[order - first]);
-            for i in 0..TOGETHER {
-                values[i][order - 1] = values[i][order - 1].mul_add(s[i], coefficient);
+fn distance<S: Isa>(target: &[Lanes<S>; 3], record: &[f64]) -> [Lanes<S>; 3] {
+    [
+        target[0] - record[0],
+        target[1] - record[1],
+        target[2] - record[2],
+    ]
+}
+
+/// The residual of one reach.
+struct Residual<'a> {
+    coefficients: &'a [f64],
+    length: f64,
+}
+
+impl Residual<'_> {
+    /// Makes the chains of the sources in `places`, from number `first` of the block on. By Horner's scheme, all
+    /// polynomials abreast: each multiply-add waits for the one before.
+    #[inline(always)]
+    fn chains<S: Isa, P: Pair, const TERMS: usize>(
+        &self,
+        target: &[Lanes<S>; 3],
+        records: &[f64],
+        places: &[u32; TOGETHER],
+        first: usize,
+        chains: &mut Chains<S>,
+    ) {
+        let simd = target[0].0;
+        let zero = Lanes::splat(simd, 0.0);
+        let reach2 = Lanes::splat(simd, self.length * self.length);
+        let slope = Lanes::splat(simd, 2.0 / (self.length * self.length));
+        let mut r2 = [zero; TOGETHER];
+        let mut s = [zero; TOGETHER];
+        for i in 0..TOGETHER {
+            let x = distance(target, record::<P>(records, places[i]));
+            r2[i] = dot(&x, &x);
+            s[i] = r2[i].mul_add(slope, Lanes::splat(simd, -1.0));
+        }
+        let [low, high] = P::ORDERS;
+        let mut mollified = [[zero; 4]; TOGETHER];
+        for term in self.coefficients.chunks_exact(1 + high - low) {
+            // An inclusive range would not be unrolled, and the values not be kept in registers.
+            for n in low - 1..high {
+                let coefficient = Lanes::splat(simd, term[n + 1 - low]);
+                for i in 0..TOGETHER {
+                    mollified[i][n] = mollified[i][n].mul_add(s[i], coefficient);
+                }
+            }
+        }
+        for i in 0..TOGETHER {
+            let chain = Chain::residual::<TERMS>(r2[i], reach2, &mollified[i]);
+            chains.r2[first + i] = r2[i];
+            for n in low - 1..high {
+                chains.b[n][first + i] = chain.b[n];
             }
         }
     }
-    values
+}
+
+/// Position and strengths of the source in this place.
+#[inline(always)]
+fn record<P: Pair>(records: &[f64], place: u32) -> &[f64] {
+    let start = place as usize * (3 + P::STRENGTHS);
+    &records[start..start + 3 + P::STRENGTHS]
 }
 
 #[cfg(test)]

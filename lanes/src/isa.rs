@@ -4,72 +4,98 @@ use pulp::{Arch, Scalar, Simd, WithSimd};
 
 use crate::Lanes;
 
-/// How many digits of a reciprocal square root are wanted. Instruction sets without a seed give all of them.
+/// How many digits of a reciprocal square root are wanted: as many as this many terms of a series about the seed of
+/// AVX-512 give. Instruction sets without a seed give all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Precision {
-    /// Relative error below 1e-4: the seed of AVX-512 as it is.
-    Seed,
+    /// Relative error below 1e-4: the seed as it is.
+    Seed = 0,
     /// Below 1e-8: one Newton step.
-    Single,
+    Single = 1,
     /// Below 1e-12: one step of third order.
-    Close,
+    Close = 2,
     /// A few units in the last place.
-    Full,
+    Full = 3,
 }
 
 /// An instruction set with a reciprocal square root.
 pub trait Isa: Simd {
-    /// $1/\sqrt x$ for positive lanes; unspecified (infinite or NaN) elsewhere.
-    fn rsqrt(self, x: Lanes<Self>, precision: Precision) -> Lanes<Self>;
+    /// Whether roots have a seed. All precisions are the same without.
+    const SEEDED: bool;
+
+    /// $1/\sqrt x$ to `TERMS` terms (see [`Precision`]) where $x$ exceeds `least` $\ge 0$; 0 elsewhere.
+    fn rsqrt_above<const TERMS: usize>(self, x: Lanes<Self>, least: Lanes<Self>) -> Lanes<Self>;
+
+    /// A bit for each lane, the lowest for the first: set where $a < b$.
+    fn less_bits(self, a: Lanes<Self>, b: Lanes<Self>) -> usize;
 }
 
 /// By hardware square root and division: where there is no seed for doubles.
 #[inline(always)]
-fn divided<S: Simd>(x: Lanes<S>) -> Lanes<S> {
-    1.0 / x.sqrt()
+fn divided<S: Simd>(x: Lanes<S>, least: Lanes<S>) -> Lanes<S> {
+    least.select_less(x, 1.0 / x.sqrt(), Lanes::splat(x.0, 0.0))
 }
 
 impl Isa for Scalar {
+    const SEEDED: bool = false;
+
     #[inline(always)]
-    fn rsqrt(self, x: Lanes<Self>, _: Precision) -> Lanes<Self> {
-        divided(x)
+    fn less_bits(self, a: Lanes<Self>, b: Lanes<Self>) -> usize {
+        usize::from(a.1 < b.1)
+    }
+
+    #[inline(always)]
+    fn rsqrt_above<const TERMS: usize>(self, x: Lanes<Self>, least: Lanes<Self>) -> Lanes<Self> {
+        divided(x, least)
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 impl Isa for pulp::x86::V3 {
+    const SEEDED: bool = false;
+
     #[inline(always)]
-    fn rsqrt(self, x: Lanes<Self>, _: Precision) -> Lanes<Self> {
-        divided(x)
+    fn less_bits(self, a: Lanes<Self>, b: Lanes<Self>) -> usize {
+        let mask = self.less_than_f64s(a.1, b.1);
+        self.avx._mm256_movemask_pd(pulp::cast(mask)) as usize
+    }
+
+    #[inline(always)]
+    fn rsqrt_above<const TERMS: usize>(self, x: Lanes<Self>, least: Lanes<Self>) -> Lanes<Self> {
+        divided(x, least)
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 impl Isa for pulp::x86::V4 {
+    const SEEDED: bool = true;
+
     #[inline(always)]
-    fn rsqrt(self, x: Lanes<Self>, precision: Precision) -> Lanes<Self> {
-        let seed = Lanes(
-            self,
-            pulp::cast(self.avx512f._mm512_rsqrt14_pd(pulp::cast(x.1))),
-        );
-        // With e = 1 - x y^2 the root is y (1 - e)^(-1/2) = y (1 + e/2 + 3 e^2/8 + ...).
-        let (half, one) = (Lanes::splat(self, 0.5), Lanes::splat(self, 1.0));
-        match precision {
-            Precision::Seed => seed,
-            Precision::Single => {
-                let e = (-(x * seed)).mul_add(seed, one);
-                (seed * e).mul_add(half, seed)
-            }
-            Precision::Close => {
-                let e = (-(x * seed)).mul_add(seed, one);
-                (seed * e).mul_add(e.mul_add(Lanes::splat(self, 0.375), half), seed)
-            }
-            Precision::Full => {
-                let e = (-(x * seed)).mul_add(seed, one);
-                let series = e.mul_add(Lanes::splat(self, 0.3125), Lanes::splat(self, 0.375));
-                (seed * e).mul_add(e.mul_add(series, half), seed)
-            }
+    fn less_bits(self, a: Lanes<Self>, b: Lanes<Self>) -> usize {
+        usize::from(self.less_than_f64s(a.1, b.1).0)
+    }
+
+    #[inline(always)]
+    fn rsqrt_above<const TERMS: usize>(self, x: Lanes<Self>, least: Lanes<Self>) -> Lanes<Self> {
+        // Zero seeds stay zero.
+        let above = self.less_than_f64s(least.1, x.1);
+        let seed = self
+            .avx512f
+            ._mm512_maskz_rsqrt14_pd(above.0, pulp::cast(x.1));
+        let seed = Lanes(self, pulp::cast(seed));
+        if TERMS == 0 {
+            return seed;
         }
+        // With e = 1 - x y^2 the root is y (1 - e)^(-1/2) = y (1 + e/2 + 3 e^2/8 + 5 e^3/16 + ...).
+        let e = (-(x * seed)).mul_add(seed, Lanes::splat(self, 1.0));
+        let mut series = Lanes::splat(self, [0.0, 0.5, 0.375, 0.3125][TERMS]);
+        if TERMS > 2 {
+            series = e.mul_add(series, Lanes::splat(self, 0.375));
+        }
+        if TERMS > 1 {
+            series = e.mul_add(series, Lanes::splat(self, 0.5));
+        }
+        (seed * e).mul_add(series, seed)
     }
 }
 
@@ -91,6 +117,44 @@ pub fn dispatch<W: WithIsa>(work: W) -> W::Output {
         #[cfg(target_arch = "x86_64")]
         Arch::V3(simd) => Simd::vectorize(simd, On(work, simd)),
         _ => Simd::vectorize(Scalar, On(work, Scalar)),
+    }
+}
+
+/// Work that takes reciprocal roots of some [`Precision`].
+pub trait WithRoots {
+    /// What the work returns.
+    type Output;
+
+    /// Whether the work is compiled for each precision, or for the full one only.
+    const EACH_PRECISION: bool;
+
+    /// The work, with roots of `TERMS` terms: must be `#[inline(always)]`.
+    fn with_roots<S: Isa, const TERMS: usize>(self, simd: S) -> Self::Output;
+}
+
+/// Does `work` with roots of at least this precision on the widest instruction set of this machine.
+#[inline(always)]
+pub fn dispatch_roots<W: WithRoots>(precision: Precision, work: W) -> W::Output {
+    dispatch(Rooted(precision, work))
+}
+
+/// Work and the precision of its roots.
+struct Rooted<W>(Precision, W);
+
+impl<W: WithRoots> WithIsa for Rooted<W> {
+    type Output = W::Output;
+
+    #[inline(always)]
+    fn with_isa<S: Isa>(self, simd: S) -> W::Output {
+        if !(S::SEEDED && W::EACH_PRECISION) {
+            return self.1.with_roots::<S, 3>(simd);
+        }
+        match self.0 {
+            Precision::Seed => self.1.with_roots::<S, 0>(simd),
+            Precision::Single => self.1.with_roots::<S, 1>(simd),
+            Precision::Close => self.1.with_roots::<S, 2>(simd),
+            Precision::Full => self.1.with_roots::<S, 3>(simd),
+        }
     }
 }
 

@@ -14,7 +14,7 @@ use pulp::Simd;
 
 mod isa;
 
-pub use isa::{Isa, Precision, WithIsa, dispatch};
+pub use isa::{Isa, Precision, WithIsa, WithRoots, dispatch, dispatch_roots};
 
 /// Every vectorised buffer has a multiple of this many entries.
 pub const PADDING: usize = 8;
@@ -80,6 +80,12 @@ impl<S: Simd> Lanes<S> {
         self.0.reduce_max_f64s(self.1)
     }
 
+    /// The larger of each two lanes.
+    #[inline(always)]
+    pub fn larger(self, other: Self) -> Self {
+        Self(self.0, self.0.max_f64s(self.1, other.1))
+    }
+
     /// `yes` in the lanes where `self < bound`, `no` elsewhere.
     #[inline(always)]
     pub fn select_less(self, bound: Self, yes: Self, no: Self) -> Self {
@@ -89,11 +95,16 @@ impl<S: Simd> Lanes<S> {
 }
 
 impl<S: Isa> Lanes<S> {
-    /// $1/\sqrt x$ to the precision asked for, where $x > 0$; 0 where $x = 0$.
+    /// $1/\sqrt x$ to `TERMS` terms (see [`Precision`]) where $x$ exceeds `least` $\ge 0$; 0 elsewhere.
     #[inline(always)]
-    pub fn rsqrt_or_zero(self, precision: Precision) -> Self {
-        let zero = Self::splat(self.0, 0.0);
-        zero.select_less(self, self.0.rsqrt(self, precision), zero)
+    pub fn rsqrt_above<const TERMS: usize>(self, least: Self) -> Self {
+        self.0.rsqrt_above::<TERMS>(self, least)
+    }
+
+    /// A bit for each lane, the lowest for the first: set where `self < bound`.
+    #[inline(always)]
+    pub fn less_bits(self, bound: Self) -> usize {
+        self.0.less_bits(self, bound)
     }
 }
 

@@ -119,6 +119,12 @@ fn stokeslet<S: Isa, const SINGULAR: bool, const OUTPUTS: usize>(
     out: &mut [Lanes<S>; MOST],
 ) {
     let along = dot(x, force);
+    if SINGULAR && OUTPUTS <= PRESSURE {
+        // One multiplication less than by a and b.
+        let turned = times_add(x, along * (chain.a() * chain.a()), force);
+        add_multiple(&turned, chain.a(), out);
+        return;
+    }
     add_multiple(force, chain.a(), out);
     add_multiple(x, chain.b() * along, out);
     if OUTPUTS > PRESSURE {

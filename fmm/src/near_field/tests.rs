@@ -138,12 +138,8 @@ fn brute<P: Pair>(tree: &Tree, mollified: &[Vec<f64>; 4], strengths: &[Vec<f64>]
                         let value = mollified[n].iter().fold(0.0, |value, c| value * s + c);
                         lane(value * near.reach.powi(-1 - 2 * n as i32) / UNITS[n])
                     });
-                    let chain = Chain::residual(
-                        lane(r2),
-                        lane(near.reach * near.reach),
-                        &values,
-                        Precision::Full,
-                    );
+                    let chain =
+                        Chain::residual::<3>(lane(r2), lane(near.reach * near.reach), &values);
                     let weighed: Vec<f64> = (0..P::STRENGTHS)
                         .map(|k| strengths[k][j] * P::FACTORS[k])
                         .collect();

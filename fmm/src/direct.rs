@@ -1,5 +1,10 @@
 //! Direct sums, pair by pair: the fastest way for a few thousand points, and the measure of every other.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "index loops over small fixed arrays are what stays in registers"
+)]
+
 use std::marker::PhantomData;
 
 use f64_lanes::{Isa, Lanes, Precision, WithIsa, dispatch};

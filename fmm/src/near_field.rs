@@ -4,6 +4,11 @@
 //! $4\pi/81 = 16\%$ are in reach. So points are sorted into tiles of eight neighbours, and a tile of targets picks
 //! first the tiles of sources, then the single sources within reach of its bounding box. Only those are summed.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "index loops over small fixed arrays are what stays in registers"
+)]
+
 use std::marker::PhantomData;
 use std::ops::Range;
 
@@ -15,10 +20,8 @@ use crate::tree::{SortedPoints, Tree};
 
 /// Points per tile: one register of the widest instruction set.
 const TILE: usize = PADDING;
-/// Sources that share the load of a polynomial's coefficients.
-const TOGETHER: usize = 2;
-/// Sources listed before they are summed.
-const LIST: usize = 1024;
+/// Lists are filled up to a multiple of this many sources.
+const TOGETHER: usize = 4;
 /// Place in a tile that no point holds.
 const VACANT: u32 = u32::MAX;
 
@@ -51,7 +54,7 @@ struct Tiles {
     points: Vec<u32>,
     /// Coordinates, place by place; infinite where vacant.
     positions: [Vec<f64>; 3],
-    /// Bounding boxes, tile by tile.
+    /// Bounding boxes, tile by tile; eight more at infinity, so that eight can be read from any tile on.
     low: [Vec<f64>; 3],
     high: [Vec<f64>; 3],
 }
@@ -69,15 +72,18 @@ impl Tiles {
             .collect();
         let mut tiles = Self::default();
         let mut starts = vec![0];
-        for tile in groups.iter().map(|group| group.chunks(TILE)) {
-            tile.for_each(|tile| tiles.push(tile, points));
+        for group in &groups {
+            group.chunks(TILE).for_each(|tile| tiles.push(tile, points));
             starts.push(tiles.count());
+        }
+        for bounds in tiles.low.iter_mut().chain(&mut tiles.high) {
+            bounds.extend([f64::INFINITY; TILE]);
         }
         (tiles, starts)
     }
 
     fn count(&self) -> usize {
-        self.low[0].len()
+        self.points.len() / TILE
     }
 
     fn push(&mut self, tile: &[u32], points: &SortedPoints) {
@@ -179,6 +185,7 @@ impl NearField {
         }
     }
 
+    #[inline(always)]
     fn targets(&self) -> &Tiles {
         self.targets.as_ref().unwrap_or(&self.sources)
     }
@@ -191,12 +198,13 @@ impl NearField {
         let mut sums = vec![0.0; tiles * P::OUTPUTS * TILE];
         sums.par_chunks_mut(P::OUTPUTS * TILE)
             .enumerate()
-            .for_each(|(tile, sums)| {
+            .for_each_init(List::default, |list, (tile, sums)| {
                 dispatch(TileSum::<P> {
                     field: self,
                     records: &records,
                     polynomials: &polynomials,
                     tile,
+                    list,
                     sums,
                     pair: PhantomData,
                 });
@@ -229,7 +237,7 @@ impl NearField {
             .for_each(|(place, record)| {
                 if place == places {
                     (0..3).for_each(|axis| {
-                        record[axis] = self.sources.low[axis].first().copied().unwrap_or(0.0)
+                        record[axis] = self.sources.positions[axis].first().copied().unwrap_or(0.0)
                     });
                 } else if self.sources.points[place] != VACANT {
                     let point = self.sources.points[place] as usize;
@@ -276,20 +284,73 @@ struct Bounds {
 }
 
 impl Bounds {
-    /// Squares of the distances from the box of eight boxes `low` to `high`; of points where the two are the same.
+    /// A bit for each of the eight boxes from number `first` on that is nearer than the root of `reach2`; boxes are
+    /// points where `low` is `high`.
     #[inline(always)]
-    fn distances(&self, low: [&[f64]; 3], high: [&[f64]; 3], squares: &mut [f64; TILE]) {
-        *squares = [0.0; TILE];
-        for axis in 0..3 {
-            let (low, high) = (&low[axis][..TILE], &high[axis][..TILE]);
-            for i in 0..TILE {
-                let (below, above) = (self.low[axis] - high[i], low[i] - self.high[axis]);
-                let gap = if below > above { below } else { above };
-                let gap = if gap > 0.0 { gap } else { 0.0 };
-                squares[i] += gap * gap;
+    fn near<S: Isa>(
+        &self,
+        simd: S,
+        low: &[Vec<f64>; 3],
+        high: &[Vec<f64>; 3],
+        first: usize,
+        reach2: f64,
+    ) -> usize {
+        let zero = Lanes::splat(simd, 0.0);
+        let mut bits = zero;
+        for register in 0..TILE / Lanes::<S>::COUNT {
+            let mut square = zero;
+            for axis in 0..3 {
+                let low = Lanes::load(simd, &low[axis][first..first + TILE], register);
+                let high = Lanes::load(simd, &high[axis][first..first + TILE], register);
+                let (below, above) = (self.low[axis] - high, low - self.high[axis]);
+                let gap = above.select_less(below, below, above);
+                let gap = zero.select_less(gap, gap, zero);
+                square = gap.mul_add(gap, square);
             }
+            let bit = Lanes::load(simd, &BITS, register);
+            bits += square.select_less(Lanes::splat(simd, reach2), bit, zero);
         }
+        bits.sum() as usize
     }
+}
+
+/// $2^i$: sums of them are bit masks, which have no instruction of their own here.
+const BITS: [f64; TILE] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0];
+
+/// For each byte the places of its bits that are set, lowest first.
+const PLACES: [[u8; TILE]; 256] = {
+    let mut places = [[0; TILE]; 256];
+    let mut byte = 0;
+    while byte < 256 {
+        let (mut place, mut count) = (0, 0);
+        while place < TILE {
+            if byte >> place & 1 == 1 {
+                places[byte][count] = place as u8;
+                count += 1;
+            }
+            place += 1;
+        }
+        byte += 1;
+    }
+    places
+};
+
+/// Writes `first` plus the place of each bit of `bits` to `list`, whatever beyond them, and returns how many they are.
+#[inline(always)]
+fn unpack(bits: usize, first: usize, list: &mut [u32]) -> usize {
+    let (places, list) = (&PLACES[bits & 255], &mut list[..TILE]);
+    for i in 0..TILE {
+        list[i] = first as u32 + u32::from(places[i]);
+    }
+    bits.count_ones() as usize
+}
+
+/// Sources within reach of a tile of targets.
+#[derive(Default)]
+struct List {
+    places: Vec<u32>,
+    /// Reaches, and where in the list the sources of each end.
+    ends: Vec<(usize, usize)>,
 }
 
 /// All that one tile of targets sees.
@@ -298,14 +359,9 @@ struct TileSum<'a, P> {
     records: &'a [f64],
     polynomials: &'a [Vec<f64>],
     tile: usize,
+    list: &'a mut List,
     sums: &'a mut [f64],
     pair: PhantomData<P>,
-}
-
-/// Sources picked for a tile of targets.
-struct List {
-    places: [u32; LIST + TILE],
-    count: usize,
 }
 
 impl<P: Pair> WithIsa for TileSum<'_, P> {
@@ -313,107 +369,86 @@ impl<P: Pair> WithIsa for TileSum<'_, P> {
 
     #[inline(always)]
     fn with_isa<S: Isa>(mut self, simd: S) {
-        let field = self.field;
-        let bounds = field.bounds(self.tile);
-        let mut list = List {
-            places: [0; LIST + TILE],
-            count: 0,
-        };
-        let near = &field.near[field.leaf[self.tile] as usize];
-        for (i, group) in near.iter().enumerate() {
-            let reach = field.reaches[group.reach];
-            let mut first = group.tiles.start;
-            while first < group.tiles.end {
-                let close = field.close_tiles(&bounds, first..group.tiles.end, reach);
-                for tile in first..group.tiles.end.min(first + TILE) {
-                    if close & 1 << (tile - first) != 0 {
-                        field.list_sources(&bounds, tile, reach, &mut list);
-                        if list.count > LIST - TILE {
-                            self.flush(simd, group.reach, &mut list);
-                        }
-                    }
+        self.field.list(simd, self.tile, self.list);
+        let mut start = 0;
+        for run in 0..self.list.ends.len() {
+            let (reach, end) = self.list.ends[run];
+            for register in 0..TILE / Lanes::<S>::COUNT {
+                // As many chains of multiply-adds at a time as the registers bear.
+                if P::OUTPUTS > 4 {
+                    self.add_listed::<S, 1>(simd, register, reach, start..end);
+                } else if P::ORDERS[1] - P::ORDERS[0] > 1 || P::STRENGTHS > 3 {
+                    self.add_listed::<S, 2>(simd, register, reach, start..end);
+                } else {
+                    self.add_listed::<S, 4>(simd, register, reach, start..end);
                 }
-                first += TILE;
             }
-            if near.get(i + 1).is_none_or(|next| next.reach != group.reach) {
-                self.flush(simd, group.reach, &mut list);
-            }
+            start = end;
         }
     }
 }
 
 impl NearField {
+    #[inline(always)]
     fn bounds(&self, tile: usize) -> Bounds {
-        let targets = self.targets();
+        let (low, high) = (&self.targets().low, &self.targets().high);
         Bounds {
-            low: [0, 1, 2].map(|axis| targets.low[axis][tile]),
-            high: [0, 1, 2].map(|axis| targets.high[axis][tile]),
+            low: [low[0][tile], low[1][tile], low[2][tile]],
+            high: [high[0][tile], high[1][tile], high[2][tile]],
         }
     }
 
-    /// Of the first eight tiles, a bit for each that is within reach.
+    /// Lists the sources within reach of the bounding box of a tile of targets, run by run of one reach, each run
+    /// filled up with the source of no strength.
     #[inline(always)]
-    fn close_tiles(&self, bounds: &Bounds, tiles: Range<usize>, reach: f64) -> u32 {
-        let count = tiles.len().min(TILE);
-        let mut boxes = [[[f64::INFINITY; TILE]; 3]; 2];
-        for axis in 0..3 {
-            let tiles = tiles.start..tiles.start + count;
-            boxes[0][axis][..count].copy_from_slice(&self.sources.low[axis][tiles.clone()]);
-            boxes[1][axis][..count].copy_from_slice(&self.sources.high[axis][tiles]);
+    fn list<S: Isa>(&self, simd: S, tile: usize, list: &mut List) {
+        let bounds = self.bounds(tile);
+        let near = &self.near[self.leaf[tile] as usize];
+        let most: usize = near.iter().map(|near| near.tiles.len()).sum();
+        list.places
+            .resize(TILE * (most + 2) + TOGETHER * self.reaches.len(), 0);
+        list.ends.clear();
+        let (mut count, mut close) = (0, [0; TILE]);
+        for (i, group) in near.iter().enumerate() {
+            let reach2 = self.reaches[group.reach] * self.reaches[group.reach];
+            let Tiles {
+                positions,
+                low,
+                high,
+                ..
+            } = &self.sources;
+            let mut first = group.tiles.start;
+            while first < group.tiles.end {
+                let wanted = (1 << (group.tiles.end - first).min(TILE)) - 1;
+                let bits = bounds.near(simd, low, high, first, reach2) & wanted;
+                let found = unpack(bits, first, &mut close);
+                for &tile in &close[..found] {
+                    let first = TILE * tile as usize;
+                    let bits = bounds.near(simd, positions, positions, first, reach2);
+                    count += unpack(bits, first, &mut list.places[count..]);
+                }
+                first += TILE;
+            }
+            if near.get(i + 1).is_none_or(|next| next.reach != group.reach) {
+                let vacant = count.next_multiple_of(TOGETHER) - count;
+                list.places[count..count + vacant].fill(self.sources.points.len() as u32);
+                count += vacant;
+                list.ends.push((group.reach, count));
+            }
         }
-        let [low, high] = &boxes;
-        let mut squares = [0.0; TILE];
-        bounds.distances(
-            [&low[0], &low[1], &low[2]],
-            [&high[0], &high[1], &high[2]],
-            &mut squares,
-        );
-        let mut bits = 0;
-        for i in 0..TILE {
-            bits |= u32::from(squares[i] < reach * reach) << i;
-        }
-        bits
-    }
-
-    /// Lists those sources of a tile that are within reach.
-    #[inline(always)]
-    fn list_sources(&self, bounds: &Bounds, tile: usize, reach: f64, list: &mut List) {
-        let places = tile * TILE..(tile + 1) * TILE;
-        let positions = [
-            &self.sources.positions[0][places.clone()],
-            &self.sources.positions[1][places.clone()],
-            &self.sources.positions[2][places.clone()],
-        ];
-        let mut squares = [0.0; TILE];
-        bounds.distances(positions, positions, &mut squares);
-        let listed = &mut list.places[list.count..list.count + TILE];
-        let mut count = 0;
-        for i in 0..TILE {
-            listed[count & (TILE - 1)] = (places.start + i) as u32;
-            count += usize::from(squares[i] < reach * reach);
-        }
-        list.count += count;
     }
 }
 
 impl<P: Pair> TileSum<'_, P> {
-    /// Sums the listed sources and clears the list.
+    /// Sums a run of the list, `TOGETHER` sources at a time.
     #[inline(always)]
-    fn flush<S: Isa>(&mut self, simd: S, reach: usize, list: &mut List) {
-        let dummy = self.field.sources.points.len() as u32;
-        while !list.count.is_multiple_of(TOGETHER) {
-            list.places[list.count] = dummy;
-            list.count += 1;
-        }
-        let registers = TILE / Lanes::<S>::COUNT;
-        for register in 0..registers {
-            self.add_listed(simd, register, reach, &list.places[..list.count]);
-        }
-        list.count = 0;
-    }
-
-    #[inline(always)]
-    fn add_listed<S: Isa>(&mut self, simd: S, register: usize, reach: usize, places: &[u32]) {
+    fn add_listed<S: Isa, const TOGETHER: usize>(
+        &mut self,
+        simd: S,
+        register: usize,
+        reach: usize,
+        run: Range<usize>,
+    ) {
         let zero = Lanes::splat(simd, 0.0);
         let registers = TILE / Lanes::<S>::COUNT;
         let target = self.field.target(simd, self.tile, register);
@@ -423,7 +458,7 @@ impl<P: Pair> TileSum<'_, P> {
         let slope = Lanes::splat(simd, 2.0 / (length * length));
         let precision = self.field.precision;
         let mut sums = [zero; MOST];
-        for places in places.as_chunks::<TOGETHER>().0 {
+        for places in self.list.places[run].as_chunks::<TOGETHER>().0 {
             let mut records = [&self.records[..0]; TOGETHER];
             let mut x = [[zero; 3]; TOGETHER];
             let mut r2 = [zero; TOGETHER];
@@ -437,7 +472,7 @@ impl<P: Pair> TileSum<'_, P> {
                 r2[i] = dot(&x[i], &x[i]);
                 s[i] = r2[i].mul_add(slope, Lanes::splat(simd, -1.0));
             }
-            let mollified = evaluate::<S, P>(simd, coefficients, &s);
+            let mollified = evaluate::<S, P, TOGETHER>(simd, coefficients, &s);
             for i in 0..TOGETHER {
                 let chain = Chain::residual(r2[i], reach2, &mollified[i], precision);
                 P::add(&x[i], &chain, &records[i][3..], &mut sums);
@@ -467,9 +502,9 @@ impl NearField {
     }
 }
 
-/// The polynomials of the orders that `P` needs, by Horner's scheme, at two places at once.
+/// The polynomials of the orders that `P` needs, by Horner's scheme.
 #[inline(always)]
-fn evaluate<S: Isa, P: Pair>(
+fn evaluate<S: Isa, P: Pair, const TOGETHER: usize>(
     simd: S,
     coefficients: &[f64],
     s: &[Lanes<S>; TOGETHER],

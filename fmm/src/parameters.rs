@@ -46,6 +46,10 @@ impl Parameters {
 const TRUNCATION: f64 = 3.0;
 const TRUNCATION_PER_DERIVATIVE: f64 = 7.0;
 
+/// Grid points for each that the shortest wave needs at least. With fewer, the grids of children cannot be brought to those of their parents:
+/// measured in whole sums.
+const OVERSAMPLING: f64 = 1.4;
+
 /// Parts of the tolerance.
 const WINDOW_PART: f64 = 0.25;
 const POLYNOMIAL_PART: f64 = 0.3;
@@ -78,8 +82,8 @@ fn cheapest_window(waves: usize, error: f64, derivatives: usize) -> (usize, usiz
     let mut cheapest = (f64::INFINITY, WIDEST, 2 * waves);
     let mut most_accurate = (f64::INFINITY, WIDEST, 2 * waves);
     for width in 3..=WIDEST {
-        // From hardly more than two points a wavelength on.
-        let narrowest = ((2 * waves).div_ceil(3) + width).next_multiple_of(2);
+        let narrowest = (OVERSAMPLING * 2.0 * waves as f64 / 3.0) as usize + width;
+        let narrowest = narrowest.next_multiple_of(2);
         for points in (narrowest..=2 * waves + width).step_by(2) {
             let cost = cost(width, points, waves);
             if cost >= cheapest.0 {

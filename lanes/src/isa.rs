@@ -66,9 +66,8 @@ impl Isa for pulp::x86::V4 {
             }
             Precision::Full => {
                 let e = (-(x * seed)).mul_add(seed, one);
-                let y = (seed * e).mul_add(half, seed);
-                let e = (-(x * y)).mul_add(y, one);
-                (y * e).mul_add(half, y)
+                let series = e.mul_add(Lanes::splat(self, 0.3125), Lanes::splat(self, 0.375));
+                (seed * e).mul_add(e.mul_add(series, half), seed)
             }
         }
     }

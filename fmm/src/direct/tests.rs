@@ -410,3 +410,78 @@ fn threads_do_not_matter() {
     };
     assert_eq!(pool(1).install(go), pool(3).install(go));
 }
+
+/// One chunk of targets on an instruction set that need not be this machine's widest.
+struct On<'a, P, S>(ChunkSum<'a, P>, S);
+
+impl<P: Pair, S: Isa> pulp::WithSimd for On<'_, P, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<T: pulp::Simd>(self, _: T) {
+        self.0.with_isa(self.1);
+    }
+}
+
+fn chunk<'a, P>(
+    records: &'a [f64],
+    targets: &'a [[f64; 3]],
+    numbers: &'a mut [f64],
+) -> ChunkSum<'a, P> {
+    ChunkSum {
+        records,
+        targets,
+        precision: Precision::Full,
+        numbers,
+        pair: PhantomData,
+    }
+}
+
+#[test]
+fn instruction_sets_agree() {
+    type All = Stokes<13, 13>;
+    let random = &mut fastrand::Rng::with_seed(1);
+    let records = vectors(random, 100 * 16 / 3 + 1).as_flattened()[..1600].to_vec();
+    let targets = vectors(random, 77);
+    let mut widest = vec![0.0; 13 * CHUNK];
+    dispatch(chunk::<All>(&records, &targets, &mut widest));
+    let mut scalar = vec![0.0; 13 * CHUNK];
+    chunk::<All>(&records, &targets, &mut scalar).with_isa(pulp::Scalar::new());
+    let compare = |other: &[f64]| {
+        for k in 0..13 {
+            for i in k * CHUNK..k * CHUNK + 77 {
+                assert!((widest[i] - other[i]).abs() < 1e-11 * (1.0 + widest[i].abs()));
+            }
+        }
+    };
+    compare(&scalar);
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = pulp::x86::V3::try_new() {
+        let mut numbers = vec![0.0; 13 * CHUNK];
+        pulp::Simd::vectorize(
+            simd,
+            On(chunk::<All>(&records, &targets, &mut numbers), simd),
+        );
+        compare(&numbers);
+    }
+}
+
+/// `cargo test --release -p stokes-fmm avx2 -- --ignored --nocapture`.
+#[test]
+#[ignore = "a measurement"]
+#[cfg(target_arch = "x86_64")]
+fn rate_of_avx2() {
+    let simd = pulp::x86::V3::try_new().expect("AVX2");
+    let random = &mut fastrand::Rng::with_seed(1);
+    let records = vectors(random, 1_000_000).as_flattened().to_vec();
+    let targets = vectors(random, CHUNK);
+    let mut numbers = vec![0.0; 3 * CHUNK];
+    let mut go = || {
+        let start = std::time::Instant::now();
+        let chunk = chunk::<Stokes<3, 3>>(&records, &targets, &mut numbers);
+        pulp::Simd::vectorize(simd, On(chunk, simd));
+        500_000.0 * CHUNK as f64 / start.elapsed().as_secs_f64()
+    };
+    let best = (0..20).map(|_| go()).fold(0.0, f64::max);
+    println!("AVX2: {best:.3e} pairs/s");
+}

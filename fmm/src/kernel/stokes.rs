@@ -1,5 +1,10 @@
 //! Stokeslets, stresslets, rotlets and sources, at viscosity 1.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "index loops over small fixed arrays are what stays in registers"
+)]
+
 use f64_lanes::{Isa, Lanes};
 
 use super::{Chain, EIGHTH, MOST, Pair, broadcast, dot, scaled};

@@ -1,3 +1,5 @@
+#![expect(clippy::needless_range_loop, reason = "indices as in the formulas")]
+
 use f64_lanes::Lanes;
 use pulp::Scalar;
 

@@ -7,6 +7,7 @@
 //! | what is summed | [`Singularities`], [`Strengths`], [`Stresslets`] |
 //! | what comes out | [`Output`], [`Flow`] |
 //! | sums pair by pair | [`direct`] |
+//! | a tree code, for comparison | [`TreeCode`] |
 //! | what is refused | [`FmmError`] |
 //!
 //! The method is dual-space multilevel kernel splitting (af Klinteberg, Greengard, Jiang, Tornberg 2025, arXiv 2509.21471) on uniform
@@ -42,6 +43,7 @@ mod transfer;
 mod transform;
 mod translate;
 mod tree;
+mod tree_code;
 mod window;
 
 #[doc(inline)]
@@ -50,6 +52,8 @@ pub use error::FmmError;
 pub use fast::{LaplaceSum, Points, StokesSum};
 #[doc(inline)]
 pub use flow::{Flow, Output, Singularities, Strengths, Stresslets};
+#[doc(inline)]
+pub use tree_code::TreeCode;
 
 /// The examples of the README are tests.
 #[cfg(doctest)]

@@ -8,7 +8,7 @@ use std::time::Instant;
 use clap::ValueEnum;
 use clouds::{Amounts, Cloud, ON_SPHEROID, errors, every, thinned};
 use serde::Serialize;
-use stokes_fmm::{Flow, FmmError, Output, Points, Singularities, StokesSum, Strengths, direct};
+use stokes_fmm::{Flow, FmmError, Output, Points, Singularities, StokesSum, Strengths, TreeCode, direct};
 
 /// Targets that the error is measured at.
 const CHECKED: usize = 500;
@@ -81,6 +81,8 @@ impl Distribution {
 pub enum Method {
     /// The fast sum.
     Fmm,
+    /// The Barnes-Hut tree code.
+    Tree,
     /// Pair by pair.
     Direct,
 }
@@ -134,7 +136,7 @@ pub struct Measured {
     pub operators_seconds: f64,
     /// What depends on the points: tree and lists.
     pub plan_seconds: f64,
-    /// Median.
+    /// One application, the median of five.
     pub apply_seconds: f64,
     pub points_per_second: f64,
     /// Of the direct sum to full precision, on one thread.
@@ -196,6 +198,19 @@ impl Problem<'_> {
     fn timed(&self) -> Result<Timed, FmmError> {
         match self.case.method {
             Method::Fmm => self.timed_fast(),
+            Method::Tree => {
+                let kinds = self.case.kernel.singularities();
+                let output = self.case.output.output();
+                let (points, tolerance) = (Points::same(self.points), self.case.tolerance);
+                let (plan, sum) = seconds(|| TreeCode::new(points, kinds, output, tolerance))?;
+                let (apply, flow) = median(APPLICATIONS, || sum.apply(&self.strengths))?;
+                Ok(Timed {
+                    operators: 0.0,
+                    plan,
+                    apply,
+                    flow,
+                })
+            }
             Method::Direct => {
                 let tolerance = Some(self.case.tolerance);
                 let sum = || self.direct(self.points, tolerance);

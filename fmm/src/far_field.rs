@@ -1,6 +1,5 @@
 //! The smooth part of the sums: charges to grids, up the tree, across by plane waves, down again, to the targets.
 
-use std::marker::PhantomData;
 use std::ops::Range;
 
 use f64_lanes::{Isa, WithIsa, dispatch};
@@ -205,7 +204,7 @@ impl FarField {
                     )
                 },
                 |(scratch, densities), (waves, batch)| {
-                    dispatch(Forward::<K> {
+                    dispatch(Forward {
                         transform,
                         shape,
                         fields,
@@ -213,7 +212,6 @@ impl FarField {
                         batch,
                         densities,
                         scratch,
-                        kernel: PhantomData,
                     });
                     dispatch(Multiply {
                         symbol,
@@ -425,7 +423,7 @@ fn interpolate<K: Far>(
 }
 
 /// The waves of a batch of boxes.
-struct Forward<'a, K> {
+struct Forward<'a> {
     transform: &'a Transform,
     shape: GridShape,
     fields: &'a [f64],
@@ -433,10 +431,9 @@ struct Forward<'a, K> {
     batch: &'a [u32],
     densities: &'a mut [f64],
     scratch: &'a mut crate::transform::Scratch,
-    kernel: PhantomData<K>,
 }
 
-impl<K: Far> WithIsa for Forward<'_, K> {
+impl WithIsa for Forward<'_> {
     type Output = ();
 
     #[inline(always)]

@@ -107,12 +107,13 @@ pub(crate) struct Costs {
 impl Costs {
     fn new<K: Far>(parameters: &Parameters) -> Self {
         let _ = parameters;
+        let r: f64 = std::env::var("FMM_RATIO").map_or(290_000.0, |v| v.parse().unwrap());
         let direct = 0.4;
         Self {
             direct,
             tree: tree::Costs {
                 pair: 1.2,
-                grid: 350_000.0,
+                grid: 1.2 * r,
                 point: 300.0,
             },
         }

@@ -84,7 +84,8 @@ impl Bounds {
         let ends = points.positions.each_ref().map(|x| {
             let x = &x[range.clone()];
             let ends = (f64::INFINITY, f64::NEG_INFINITY);
-            x.iter().fold(ends, |(low, high), &x| (low.min(x), high.max(x)))
+            x.iter()
+                .fold(ends, |(low, high), &x| (low.min(x), high.max(x)))
         });
         Self {
             center: ends.map(|(low, high)| 0.5 * (low + high)),
@@ -295,12 +296,7 @@ impl TreeCode {
     }
 
     /// The flow in the order of the tree, at the targets of one leaf.
-    fn flow(
-        &self,
-        view: &View,
-        sources: &Sources,
-        proxies: &[Vec<f64>],
-    ) -> Result<Flow, FmmError> {
+    fn flow(&self, view: &View, sources: &Sources, proxies: &[Vec<f64>]) -> Result<Flow, FmmError> {
         let basis = Basis::new(self.opening.proxies);
         let mut seen = Records::default();
         for range in &view.near {
@@ -427,7 +423,13 @@ impl Sources {
         for &number in &code.sources.order {
             let all = strengths.of(number as usize, Singularities::All);
             let vector = |first: usize| [all[first], all[first + 1], all[first + 2]];
-            records.push([0.0; 3], vector(0), [vector(3), vector(6)], vector(9), all[12]);
+            records.push(
+                [0.0; 3],
+                vector(0),
+                [vector(3), vector(6)],
+                vector(9),
+                all[12],
+            );
             let mut record = [0.0; FIELDS];
             record[..DYADS].copy_from_slice(&all[..3]);
             for j in 0..3 {
@@ -553,8 +555,7 @@ impl Basis {
     fn place(&self, bounds: &Bounds, node: usize) -> [f64; 3] {
         let p = self.nodes.len();
         let along = [node % p, node / p % p, node / (p * p)];
-        [0, 1, 2]
-            .map(|axis| bounds.center[axis] + bounds.half[axis] * self.nodes[along[axis]])
+        [0, 1, 2].map(|axis| bounds.center[axis] + bounds.half[axis] * self.nodes[along[axis]])
     }
 
     /// Every polynomial at a point; `powers` is room for as many numbers.
@@ -564,7 +565,10 @@ impl Basis {
             *power = current;
             (below, current) = (current, 2.0 * x * current - below);
         }
-        for (value, series) in values.iter_mut().zip(self.series.chunks_exact(powers.len())) {
+        for (value, series) in values
+            .iter_mut()
+            .zip(self.series.chunks_exact(powers.len()))
+        {
             *value = series.iter().zip(&*powers).map(|(c, t)| c * t).sum();
         }
     }

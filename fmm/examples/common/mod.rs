@@ -8,7 +8,9 @@ use std::time::Instant;
 use clap::ValueEnum;
 use clouds::{Amounts, Cloud, ON_SPHEROID, errors, every, thinned};
 use serde::Serialize;
-use stokes_fmm::{Flow, FmmError, Output, Points, Singularities, StokesSum, Strengths, TreeCode, direct};
+use stokes_fmm::{
+    Flow, FmmError, Output, Points, Singularities, StokesSum, Strengths, TreeCode, direct,
+};
 
 /// Targets that the error is measured at.
 const CHECKED: usize = 500;

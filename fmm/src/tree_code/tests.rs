@@ -5,7 +5,9 @@ use super::*;
 const COUNT: usize = 12_000;
 
 fn vectors(random: &mut Rng) -> Vec<[f64; 3]> {
-    (0..COUNT).map(|_| [0; 3].map(|_| random.f64() - 0.5)).collect()
+    (0..COUNT)
+        .map(|_| [0; 3].map(|_| random.f64() - 0.5))
+        .collect()
 }
 
 fn relative_error(found: &[f64], expected: &[f64]) -> f64 {

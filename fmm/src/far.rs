@@ -26,6 +26,31 @@ pub(crate) trait Far: Pair {
     fn charges(strength: &[f64]) -> ([f64; FIELDS], [[f64; 3]; FIELDS]);
 }
 
+/// The numbers of a kernel's fields, for the code that need not be compiled for each kernel.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fields {
+    pub densities: usize,
+    pub potentials: usize,
+    pub dipoles: bool,
+    pub gradients: bool,
+}
+
+impl Fields {
+    pub fn of<K: Far>() -> Self {
+        Self {
+            densities: K::DENSITIES,
+            potentials: K::POTENTIALS,
+            dipoles: K::DIPOLES,
+            gradients: K::GRADIENTS,
+        }
+    }
+
+    /// Fields that a grid must have room for.
+    pub fn most(self) -> usize {
+        self.densities.max(self.potentials)
+    }
+}
+
 impl<const STRENGTHS: usize, const OUTPUTS: usize> Far for Stokes<STRENGTHS, OUTPUTS> {
     const DENSITIES: usize = if STRENGTHS == 3 { 3 } else { 4 };
     const POTENTIALS: usize = if OUTPUTS == 3 { 3 } else { 4 };

@@ -5,68 +5,51 @@ use std::ops::Range;
 use f64_lanes::{Isa, WithIsa, dispatch};
 use rayon::prelude::*;
 
-use crate::far::{FIELDS, Far};
-use crate::gemm::Into;
+use crate::far::Fields;
 use crate::gridding::{self, Cube};
 use crate::operators::Operators;
-use crate::transfer::GridShape;
-use crate::transform::{BATCH, Transform};
-use crate::translate::Sweeps;
+use crate::transform::BATCH;
+use crate::translate::Slab;
 use crate::tree::{GriddedBox, SortedPoints, Tree};
 
 /// Charges of the sources, in the order of the tree: for each density its charge and, behind all charges, for
 /// each density its dipole along x, y and z.
 pub(crate) type Charges = Vec<Vec<f64>>;
 
-/// How the boxes of each level are gathered for their transforms.
+/// How the boxes of the tree work together.
 #[derive(Clone, Debug)]
 pub(crate) struct FarField {
-    levels: Vec<LevelPlan>,
+    /// How the boxes of each level hand on their waves.
+    levels: Vec<Vec<Slab>>,
     /// Level and box of each leaf.
     homes: Vec<[u32; 2]>,
-}
-
-#[derive(Clone, Debug)]
-struct LevelPlan {
-    /// Boxes with sources.
-    sources: Vec<u32>,
-    /// Boxes with targets.
-    targets: Vec<u32>,
-    sweeps: Sweeps,
 }
 
 /// Grids of all boxes, one level after the other.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Grids {
     levels: Vec<Vec<f64>>,
-    /// Potentials' waves of the sources of one level.
+    /// Potentials' waves of the sources of one slab.
     waves: Vec<f64>,
-    /// One of these fields, translated.
-    translated: Vec<f64>,
+    /// The waves of this slab and the two before, taken over x and y.
+    swept: [Vec<f64>; 3],
+    /// Those of the targets that are served with a slab, taken over z too.
+    gathered: Vec<f64>,
 }
 
 impl FarField {
     pub fn new(tree: &Tree) -> Self {
         let levels = tree.levels.iter().map(|level| {
-            let with = |full: fn(&GriddedBox) -> bool| -> Vec<u32> {
-                (0..level.boxes.len() as u32)
-                    .filter(|&b| full(&level.boxes[b as usize]))
+            let with = |full: fn(&GriddedBox) -> bool| -> Vec<(u32, [i64; 3])> {
+                let numbered = (0..).zip(&level.boxes).filter(|(_, gridded)| full(gridded));
+                numbered
+                    .map(|(number, gridded)| (number, gridded.place))
                     .collect()
             };
-            let sources = with(|b| !b.sources.is_empty());
-            let targets = with(|b| !b.targets.is_empty());
-            let places = |boxes: &[u32]| -> Vec<[i64; 3]> {
-                boxes
-                    .iter()
-                    .map(|&b| level.boxes[b as usize].place)
-                    .collect()
-            };
-            let sweeps = Sweeps::new(&places(&sources), &places(&targets));
-            LevelPlan {
-                sources,
-                targets,
-                sweeps,
-            }
+            Slab::cut(
+                &with(|b| !b.sources.is_empty()),
+                &with(|b| !b.targets.is_empty()),
+            )
         });
         let mut homes = vec![[0; 2]; tree.leaves.len()];
         for (depth, level) in tree.levels.iter().enumerate() {
@@ -83,34 +66,36 @@ impl FarField {
     }
 
     /// Lays the charges on the grids, and leaves potentials there.
-    pub fn fill<K: Far>(
+    pub fn fill(
         &self,
         operators: &Operators,
+        fields: Fields,
         tree: &Tree,
         charges: &Charges,
         grids: &mut Grids,
     ) {
         let shape = operators.shape;
-        let len = shape.len(FIELDS.min(K::DENSITIES.max(K::POTENTIALS)));
+        let len = shape.len(fields.most());
         grids.levels.resize_with(tree.levels.len(), Vec::new);
         for (level, grids) in tree.levels.iter().zip(&mut grids.levels) {
             grids.resize(level.boxes.len() * len, 0.0);
         }
         for depth in (0..tree.levels.len()).rev() {
-            self.up::<K>(operators, tree, charges, grids, depth, len);
+            self.up(operators, fields, tree, charges, grids, depth, len);
         }
         for depth in 0..tree.levels.len() {
-            self.across::<K>(operators, tree, grids, depth, len);
+            self.across(operators, fields, tree, grids, depth, len);
             if depth > 0 {
-                self.down::<K>(operators, tree, grids, depth, len);
+                self.down(operators, fields, tree, grids, depth, len);
             }
         }
     }
 
     /// Charges of the leaves and of the children's grids on the grids of one level.
-    fn up<K: Far>(
+    fn up(
         &self,
         operators: &Operators,
+        fields: Fields,
         tree: &Tree,
         charges: &Charges,
         grids: &mut Grids,
@@ -141,7 +126,7 @@ impl FarField {
                                 center: gridded.center,
                                 side: level.side,
                             };
-                            spread::<K>(operators, cube, &tree.sources, charges, range, grid);
+                            spread(operators, fields, cube, &tree.sources, charges, range, grid);
                         }
                     }
                     let Some(finer) = finer else { return };
@@ -154,7 +139,7 @@ impl FarField {
                         let from = &children[child as usize * len..][..len];
                         dispatch(Handing {
                             up: true,
-                            fields: K::DENSITIES,
+                            fields: fields.densities,
                             octant,
                             from,
                             to: grid,
@@ -167,105 +152,66 @@ impl FarField {
     }
 
     /// Charges of all boxes of a level to potentials, by plane waves.
-    fn across<K: Far>(
+    fn across(
         &self,
         operators: &Operators,
+        fields: Fields,
         tree: &Tree,
         grids: &mut Grids,
         depth: usize,
         len: usize,
     ) {
-        let (level, plan) = (&tree.levels[depth], &self.levels[depth]);
-        let (transform, symbol) = if depth == 0 {
-            (&operators.root.transform, &operators.root.symbol)
-        } else {
-            (&operators.level.transform, &operators.level.symbol)
-        };
-        if plan.sources.is_empty() || plan.targets.is_empty() {
-            return;
-        }
+        let side = tree.levels[depth].side;
         let Grids {
             levels,
             waves,
-            translated,
+            swept,
+            gathered,
         } = grids;
-        let fields = &mut levels[depth];
-        let batch_len = K::POTENTIALS * transform.waves_len();
-        waves.resize(plan.sources.len().div_ceil(BATCH) * batch_len, 0.0);
+        let mut boxes: Vec<&mut [f64]> = levels[depth].chunks_exact_mut(len).collect();
         let shape = operators.shape;
-        waves
-            .par_chunks_exact_mut(batch_len)
-            .zip(plan.sources.par_chunks(BATCH))
-            .for_each_init(
-                || {
-                    (
-                        transform.scratch(),
-                        vec![0.0; K::DENSITIES * transform.waves_len()],
-                    )
-                },
-                |(scratch, densities), (waves, batch)| {
-                    dispatch(Forward {
-                        transform,
-                        shape,
-                        fields,
-                        len,
-                        batch,
-                        densities,
-                        scratch,
-                    });
-                    dispatch(Multiply {
-                        symbol,
-                        side: level.side,
-                        densities,
-                        potentials: waves,
-                    });
-                },
-            );
-        let mut boxes: Vec<&mut [f64]> = fields
-            .chunks_exact_mut(len)
-            .zip(&level.boxes)
-            .filter(|(_, gridded)| !gridded.targets.is_empty())
-            .map(|(grid, _)| grid)
-            .collect();
-        let batches = plan.targets.len().div_ceil(BATCH);
-        for potential in 0..K::POTENTIALS {
-            let field = |batch: usize| -> &[f64] {
-                &waves[batch * batch_len + potential * transform.waves_len()..]
-                    [..transform.waves_len()]
+        if depth == 0 {
+            let across = &operators.root;
+            across.forward(fields, shape, side, &boxes, &[0], waves);
+            let waves_of = |field: usize, _: usize, out: &mut [f64]| {
+                out.copy_from_slice(&waves[field * out.len()..][..out.len()]);
             };
-            if depth > 0 {
-                operators.turns.translate(&plan.sweeps, field, translated);
-            }
-            let translated = &*translated;
-            boxes.par_chunks_mut(BATCH).enumerate().for_each_init(
-                || (transform.scratch(), vec![0.0; transform.waves_len()]),
-                |(scratch, waves), (batch, boxes)| {
-                    if depth > 0 {
-                        operators.turns.batch(translated, batches, batch, waves);
-                    } else {
-                        waves.copy_from_slice(field(0));
-                    }
-                    let at = potential * shape.field();
-                    let mut grids: Vec<&mut [f64]> = boxes
-                        .iter_mut()
-                        .map(|grid| &mut grid[at..at + shape.field()])
-                        .collect();
-                    dispatch(Backward {
-                        transform,
-                        waves,
-                        grids: &mut grids,
-                        stride: shape.stride(),
-                        scratch,
-                    });
-                },
+            across.backward(shape, fields.potentials, &mut boxes, &[0], waves_of);
+            return;
+        }
+        for (number, slab) in self.levels[depth].iter().enumerate() {
+            let across = &operators.level;
+            across.forward(fields, shape, side, &boxes, &slab.sources, waves);
+            swept.rotate_right(1);
+            operators
+                .turns
+                .sweep(slab, fields.potentials, waves, &mut swept[0]);
+            let kept: Vec<&[f64]> = swept[..swept.len().min(number + 1)]
+                .iter()
+                .map(|s| &s[..])
+                .collect();
+            operators
+                .turns
+                .gather(slab, fields.potentials, &kept, gathered);
+            let batches = slab.targets.len().div_ceil(BATCH);
+            let waves_of = |field: usize, batch: usize, out: &mut [f64]| {
+                operators.turns.batch(gathered, field, batch, batches, out);
+            };
+            across.backward(
+                shape,
+                fields.potentials,
+                &mut boxes,
+                &slab.targets,
+                waves_of,
             );
         }
     }
 
     /// Adds the potentials of the parents to those of one level.
-    fn down<K: Far>(
+    fn down(
         &self,
         operators: &Operators,
+        fields: Fields,
         tree: &Tree,
         grids: &mut Grids,
         depth: usize,
@@ -285,7 +231,7 @@ impl FarField {
                     }
                     dispatch(Handing {
                         up: false,
-                        fields: K::POTENTIALS,
+                        fields: fields.potentials,
                         octant: gridded.octant,
                         from: &parents[gridded.parent as usize * len..][..len],
                         to: grid,
@@ -298,17 +244,18 @@ impl FarField {
 
     /// Adds the potentials and, behind them, the derivatives of as many of them as there are outputs left, to
     /// `outputs`: columns over the targets in the tree's order.
-    pub fn read<K: Far>(
+    pub fn read(
         &self,
         operators: &Operators,
+        fields: Fields,
         tree: &Tree,
         grids: &Grids,
         outputs: &mut [Vec<f64>],
     ) {
         let points = tree.target_points();
         let mut parts = self.parts(tree, outputs);
-        let len = operators.shape.len(K::DENSITIES.max(K::POTENTIALS));
-        let numbers = K::POTENTIALS * if K::GRADIENTS { 4 } else { 1 };
+        let len = operators.shape.len(fields.most());
+        let numbers = fields.potentials * if fields.gradients { 4 } else { 1 };
         parts
             .par_iter_mut()
             .for_each_init(Vec::new, |values, (leaf, columns)| {
@@ -316,8 +263,8 @@ impl FarField {
                 let level = &tree.levels[depth];
                 let targets = tree.leaves[*leaf as usize].targets.clone();
                 let range = targets.start as usize..targets.end as usize;
-                let grid =
-                    &grids.levels[depth][number * len..][..K::POTENTIALS * operators.shape.field()];
+                let grid = &grids.levels[depth][number * len..]
+                    [..fields.potentials * operators.shape.field()];
                 values.clear();
                 values.resize(range.len() * numbers, 0.0);
                 let cube = Cube {
@@ -325,7 +272,7 @@ impl FarField {
                     side: level.side,
                 };
                 let positions = points.positions.each_ref().map(|x| &x[range.clone()]);
-                interpolate::<K>(operators, cube, positions, grid, values);
+                interpolate(operators, fields, cube, positions, grid, values);
                 for (column, out) in columns.iter_mut().enumerate() {
                     for (out, values) in out.iter_mut().zip(values.chunks_exact(numbers)) {
                         *out += values[column];
@@ -358,8 +305,9 @@ impl FarField {
 }
 
 /// Lays the charges of the points in `range` on the grid of their box.
-fn spread<K: Far>(
+fn spread(
     operators: &Operators,
+    fields: Fields,
     cube: Cube,
     points: &SortedPoints,
     charges: &Charges,
@@ -367,14 +315,14 @@ fn spread<K: Far>(
     grid: &mut [f64],
 ) {
     let window = &operators.window;
-    let grid = &mut grid[..K::DENSITIES * operators.shape.field()];
+    let grid = &mut grid[..fields.densities * operators.shape.field()];
     let positions = points.positions.each_ref().map(|x| &x[range.clone()]);
     let charge = |density: usize| &charges[density][range.clone()];
     let dipole = |density: usize| {
-        [0, 1, 2].map(|axis| &charges[K::DENSITIES + 3 * density + axis][range.clone()])
+        [0, 1, 2].map(|axis| &charges[fields.densities + 3 * density + axis][range.clone()])
     };
     let none: [&[f64]; 3] = [&[]; 3];
-    match (K::DENSITIES, K::DIPOLES) {
+    match (fields.densities, fields.dipoles) {
         (1, false) => {
             gridding::spread::<1, false>(window, cube, positions, [charge(0)], [none], grid)
         }
@@ -404,98 +352,22 @@ fn spread<K: Far>(
 }
 
 /// Potentials of a box's grid at points in it.
-fn interpolate<K: Far>(
+fn interpolate(
     operators: &Operators,
+    fields: Fields,
     cube: Cube,
     positions: [&[f64]; 3],
     grid: &[f64],
     values: &mut [f64],
 ) {
     let window = &operators.window;
-    match (K::POTENTIALS, K::GRADIENTS) {
+    match (fields.potentials, fields.gradients) {
         (1, false) => gridding::interpolate::<1, false>(window, cube, positions, grid, values),
         (1, true) => gridding::interpolate::<1, true>(window, cube, positions, grid, values),
         (3, false) => gridding::interpolate::<3, false>(window, cube, positions, grid, values),
         (4, false) => gridding::interpolate::<4, false>(window, cube, positions, grid, values),
         (4, true) => gridding::interpolate::<4, true>(window, cube, positions, grid, values),
         other => unreachable!("no kernel has {other:?}"),
-    }
-}
-
-/// The waves of a batch of boxes.
-struct Forward<'a> {
-    transform: &'a Transform,
-    shape: GridShape,
-    fields: &'a [f64],
-    len: usize,
-    batch: &'a [u32],
-    densities: &'a mut [f64],
-    scratch: &'a mut crate::transform::Scratch,
-}
-
-impl WithIsa for Forward<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_isa<S: Isa>(self, simd: S) {
-        for (density, waves) in self
-            .densities
-            .chunks_exact_mut(self.transform.waves_len())
-            .enumerate()
-        {
-            let mut grids = [&self.fields[..0]; BATCH];
-            for lane in 0..BATCH {
-                // A batch that is not full repeats its last box: nobody reads those lanes.
-                let number = self.batch[lane.min(self.batch.len() - 1)] as usize;
-                let at = number * self.len + density * self.shape.field();
-                grids[lane] = &self.fields[at..][..self.shape.field()];
-            }
-            self.transform
-                .forward(simd, grids, self.shape.stride(), waves, self.scratch);
-        }
-    }
-}
-
-/// Densities to potentials.
-struct Multiply<'a> {
-    symbol: &'a crate::symbol::Symbol,
-    side: f64,
-    densities: &'a [f64],
-    potentials: &'a mut [f64],
-}
-
-impl WithIsa for Multiply<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_isa<S: Isa>(self, simd: S) {
-        self.symbol
-            .apply(simd, self.side, self.densities, self.potentials);
-    }
-}
-
-/// Waves of a batch to one field of its boxes.
-struct Backward<'a, 'b> {
-    transform: &'a Transform,
-    waves: &'a [f64],
-    grids: &'a mut [&'b mut [f64]],
-    stride: usize,
-    scratch: &'a mut crate::transform::Scratch,
-}
-
-impl WithIsa for Backward<'_, '_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_isa<S: Isa>(self, simd: S) {
-        let Self {
-            transform,
-            waves,
-            grids,
-            stride,
-            scratch,
-        } = self;
-        transform.backward(simd, waves, grids, stride, Into::Replace, scratch);
     }
 }
 

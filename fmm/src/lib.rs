@@ -22,6 +22,7 @@
 //! | which boxes have grids | `tree` |
 //! | the two halves of a sum, and both together | `near_field`, `far_field`, `plan` |
 
+mod across;
 pub mod direct;
 mod error;
 mod far;

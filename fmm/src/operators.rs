@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use crate::across::Across;
 use crate::error::FmmError;
 use crate::far::Far;
 use crate::parameters::Parameters;
@@ -28,13 +29,6 @@ pub(crate) struct Operators {
     pub transfer: Transfer,
     /// Mollified chain, order by order from 1, as polynomials in $s = 2(r/L)^2 - 1$, highest power first.
     pub mollified: [Vec<f64>; 4],
-}
-
-/// From charges on a grid to potentials on a grid.
-#[derive(Clone, Debug)]
-pub(crate) struct Across {
-    pub transform: Transform,
-    pub symbol: Symbol,
 }
 
 impl Operators {
@@ -80,6 +74,8 @@ impl Operators {
                 Vec::new()
             }
         });
+        let terms = mollified.iter().map(Vec::len).max().unwrap_or(0);
+        let costs = Costs::new::<K>(&parameters, &level.transform.ball, window.reach(), terms);
         Self {
             shape: GridShape {
                 points: parameters.points,
@@ -90,7 +86,7 @@ impl Operators {
             transfer,
             mollified,
             window,
-            costs: Costs::new::<K>(&parameters),
+            costs,
             parameters,
         }
     }
@@ -105,17 +101,24 @@ pub(crate) struct Costs {
 }
 
 impl Costs {
-    fn new<K: Far>(parameters: &Parameters) -> Self {
-        let _ = parameters;
-        let r: f64 = std::env::var("FMM_RATIO").map_or(290_000.0, |v| v.parse().unwrap());
-        let direct = 0.4;
+    /// Counted operations times what they took on one core with AVX-512 (see the benches); only ratios matter.
+    fn new<K: Far>(parameters: &Parameters, ball: &Ball, reach: usize, terms: usize) -> Self {
+        let numbers = (K::STRENGTHS + K::OUTPUTS) as f64;
+        let orders = (K::ORDERS[1] + 1 - K::ORDERS[0]) as f64;
+        // About every other pair that is evaluated is within reach.
+        let pair = 1.9 * (0.3 + 0.08 * numbers + 0.021 * orders * terms as f64);
+        let [g, r, j] = [parameters.points, reach, ball.waves].map(|n| n as f64);
+        let rows = ball.planes.iter().map(Vec::len).sum::<usize>() as f64;
+        let transform = g * g * g * j + 2.0 * g * g * rows + 4.0 * g * ball.len as f64;
+        let transfer = r * g * g * g + r * r * g * g + r * r * r * g;
+        let fields = (K::DENSITIES + K::POTENTIALS) as f64;
+        let translation = 13.0 * (ball.len * K::POTENTIALS) as f64;
+        let grid = 1e5 + fields * (transform + transfer) / 15.0 + translation;
+        let direct = 0.03 + 0.07 * numbers;
+        let point = 40.0 * (parameters.width as f64 / 4.0).powi(3).max(2.0);
         Self {
             direct,
-            tree: tree::Costs {
-                pair: 1.2,
-                grid: 1.2 * r,
-                point: 300.0,
-            },
+            tree: tree::Costs { pair, grid, point },
         }
     }
 }

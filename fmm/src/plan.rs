@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use rayon::prelude::*;
 
 use crate::direct::{Problem, records};
-use crate::far::Far;
+use crate::far::{Far, Fields};
 use crate::far_field::{Charges, FarField, Grids};
 use crate::kernel::MOST;
 use crate::near_field::NearField;
@@ -161,13 +161,23 @@ impl<K: Far> Planned for Plan<K> {
             .unwrap_or_else(PoisonError::into_inner)
             .pop()
             .unwrap_or_default();
-        self.far
-            .fill::<K>(&self.operators, &self.tree, &charges, &mut grids);
+        self.far.fill(
+            &self.operators,
+            Fields::of::<K>(),
+            &self.tree,
+            &charges,
+            &mut grids,
+        );
         drop(charges);
         let order = &self.targets().order;
         let mut outputs = vec![vec![0.0; order.len()]; K::OUTPUTS];
-        self.far
-            .read::<K>(&self.operators, &self.tree, &grids, &mut outputs);
+        self.far.read(
+            &self.operators,
+            Fields::of::<K>(),
+            &self.tree,
+            &grids,
+            &mut outputs,
+        );
         self.grids
             .lock()
             .unwrap_or_else(PoisonError::into_inner)

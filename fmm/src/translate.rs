@@ -3,10 +3,9 @@
 //! With waves $k = 2\pi j/3$ in units of the box, a shift by one box turns cosine and sine of an axis by a
 //! third of a circle or not at all, and the sum over the 27 colleagues is three sums over three along the axes.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use f64_lanes::{Isa, Lanes, WithIsa, dispatch};
-use pulp::Simd;
 use rayon::prelude::*;
 
 use crate::transform::{BATCH, Ball, CLASSES};
@@ -17,14 +16,26 @@ const CHUNK: usize = 16;
 /// One block of a box: all classes of a chunk of waves.
 const BLOCK: usize = CLASSES * CHUNK;
 
-/// Which boxes (or empty places between them) receive from which, one axis after the other.
+/// Boxes of a level that are translated together: some layers of places across the z axis.
+///
+/// Only the waves of three slabs are ever kept, not those of the level.
 #[derive(Clone, Debug)]
-pub(crate) struct Sweeps {
-    sources: usize,
-    /// For each axis, for each receiver: its lower neighbour, itself, its upper neighbour among the givers.
-    /// One past the last giver stands for none.
-    axes: [Vec<[u32; 3]>; 3],
+pub(crate) struct Slab {
+    /// Boxes with sources, as numbers of the level.
+    pub sources: Vec<u32>,
+    /// Boxes with targets that can be served once this slab has been swept: those of its layers but the last, and of the last
+    /// layer of the slab before.
+    pub targets: Vec<u32>,
+    /// For each receiver along x: its lower neighbour, itself, its upper neighbour among the sources. One past the last stands for
+    /// none, here and below.
+    x: Vec<Links>,
+    /// For each receiver along y, the receivers along x.
+    y: Vec<Links>,
+    /// For each target, the receivers along y: counted in this slab and, behind its none, in the two before.
+    z: Vec<Links>,
 }
+
+type Links = [u32; 3];
 
 type Place = [i64; 3];
 
@@ -42,42 +53,94 @@ fn around(places: impl IntoIterator<Item = Place>, axis: usize) -> BTreeSet<Plac
         .collect()
 }
 
-impl Sweeps {
-    /// From the places of boxes with sources to those of boxes with targets.
-    pub fn new(sources: &[Place], targets: &[Place]) -> Self {
-        let wanted_y = around(targets.iter().copied(), 2);
+/// Boxes that are worth a slab of their own.
+const WORTHWHILE: usize = 64;
+
+impl Slab {
+    /// Slabs, from the lowest to the highest, between boxes with sources and boxes with targets at these places.
+    pub fn cut(sources: &[(u32, Place)], targets: &[(u32, Place)]) -> Vec<Self> {
+        let wanted_y = around(targets.iter().map(|&(_, place)| place), 2);
         let wanted_x = around(wanted_y.iter().copied(), 1);
-        let after_x: Vec<Place> = around(sources.iter().copied(), 0)
-            .intersection(&wanted_x)
-            .copied()
-            .collect();
+        let reached_x = around(sources.iter().map(|&(_, place)| place), 0);
+        let after_x: Vec<Place> = reached_x.intersection(&wanted_x).copied().collect();
         let after_y: Vec<Place> = around(after_x.iter().copied(), 1)
             .intersection(&wanted_y)
             .copied()
             .collect();
-        let axes = [
-            links(sources, &after_x, 0),
-            links(&after_x, &after_y, 1),
-            links(&after_y, targets, 2),
-        ];
-        Self {
-            sources: sources.len(),
-            axes,
+        let ends = ends(sources, targets);
+        let mut slabs: Vec<Self> = Vec::new();
+        let mut kept: Vec<Vec<Place>> = Vec::new();
+        let mut low = i64::MIN;
+        for (number, &high) in ends.iter().enumerate() {
+            let within = |place: &Place| (low..high).contains(&place[2]);
+            let sources: Vec<_> = sources.iter().filter(|(_, place)| within(place)).collect();
+            let givers: Vec<Place> = sources.iter().map(|(_, place)| *place).collect();
+            let after_x: Vec<Place> = after_x.iter().filter(|p| within(p)).copied().collect();
+            let after_y: Vec<Place> = after_y.iter().filter(|p| within(p)).copied().collect();
+            let last = number + 1 == ends.len();
+            let (from, to) = (low.saturating_sub(1), if last { high } else { high - 1 });
+            let ripe = targets
+                .iter()
+                .filter(|(_, place)| (from..to).contains(&place[2]));
+            let ripe: Vec<_> = ripe.collect();
+            kept.insert(0, after_y.clone());
+            kept.truncate(3);
+            slabs.push(Self {
+                sources: sources.iter().map(|(number, _)| *number).collect(),
+                targets: ripe.iter().map(|(number, _)| *number).collect(),
+                x: links(&[&givers], &after_x, 0),
+                y: links(&[&after_x], &after_y, 1),
+                z: links(
+                    &kept.iter().map(|places| &places[..]).collect::<Vec<_>>(),
+                    &ripe.iter().map(|(_, place)| *place).collect::<Vec<_>>(),
+                    2,
+                ),
+            });
+            low = high;
         }
+        slabs
     }
 }
 
-fn links(givers: &[Place], receivers: &[Place], axis: usize) -> Vec<[u32; 3]> {
-    let numbers: HashMap<Place, u32> = givers
-        .iter()
-        .enumerate()
-        .map(|(number, &place)| (place, number as u32))
-        .collect();
-    let number = |place| numbers.get(&place).copied().unwrap_or(givers.len() as u32);
-    receivers
-        .iter()
-        .map(|&place| [-1, 0, 1].map(|step| number(beside(place, axis, step))))
-        .collect()
+/// Where slabs end: layers of z are added until there are boxes enough for a slab.
+fn ends(sources: &[(u32, Place)], targets: &[(u32, Place)]) -> Vec<i64> {
+    let mut layers: BTreeMap<i64, usize> = BTreeMap::new();
+    for (_, place) in sources.iter().chain(targets) {
+        *layers.entry(place[2]).or_default() += 1;
+    }
+    let mut ends = Vec::new();
+    let mut boxes = 0;
+    for (&layer, &count) in &layers {
+        boxes += count;
+        if boxes >= 2 * WORTHWHILE {
+            ends.push(layer + 1);
+            boxes = 0;
+        }
+    }
+    if boxes > 0 {
+        ends.push(i64::MAX);
+    } else if let Some(last) = ends.last_mut() {
+        *last = i64::MAX;
+    }
+    ends
+}
+
+/// The neighbours of each receiver along an axis, among several lists of givers each followed by a none.
+fn links(givers: &[&[Place]], receivers: &[Place], axis: usize) -> Vec<Links> {
+    let mut numbers: HashMap<Place, u32> = HashMap::new();
+    let mut first = 0;
+    for givers in givers {
+        numbers.extend(
+            (first..)
+                .zip(*givers)
+                .map(|(number, &place)| (place, number)),
+        );
+        first += givers.len() as u32 + 1;
+    }
+    let none = givers.first().map_or(0, |givers| givers.len() as u32);
+    let number = |place| numbers.get(&place).copied().unwrap_or(none);
+    let of = |&place: &Place| [-1, 0, 1].map(|step| number(beside(place, axis, step)));
+    receivers.iter().map(of).collect()
 }
 
 /// Cosine and sine of the turn that each wave of a ball makes over one box, axis by axis.
@@ -107,68 +170,109 @@ impl Turns {
         }
     }
 
-    /// Doubles of one field of a batch of boxes as it comes from [`Self::translate`].
-    fn chunk_len(&self, batches: usize) -> usize {
-        batches * BLOCK * BATCH
+    /// Chunks of each field.
+    fn chunks(&self) -> usize {
+        self.waves.div_ceil(CHUNK)
     }
 
-    /// One field of the boxes with sources, summed over the colleagues of the boxes with targets.
+    /// Takes the waves of a slab's sources over x and y.
     ///
-    /// `waves` gives the field of a batch of sources, `[class of x][class of y][wave][class of z][8]`; the result is
-    /// `[chunk][batch of targets][class of x][class of y][CHUNK][class of z][8]`, to be read by [`Self::batch`].
-    pub fn translate<'a>(
-        &self,
-        sweeps: &Sweeps,
-        waves: impl Fn(usize) -> &'a [f64] + Sync,
-        out: &mut Vec<f64>,
-    ) {
-        let batches = sweeps.axes[2].len().div_ceil(BATCH);
-        out.resize(self.waves.div_ceil(CHUNK) * self.chunk_len(batches), 0.0);
-        out.par_chunks_mut(self.chunk_len(batches))
-            .enumerate()
-            .for_each_init(
-                || sweeps.axes.each_ref().map(|_| Vec::new()),
-                |blocks, (chunk, out)| {
-                    let first = chunk * CHUNK;
-                    let count = CHUNK.min(self.waves - first);
-                    let [even, odd, _] = blocks;
-                    even.resize((sweeps.sources + 1) * BLOCK, 0.0);
-                    for batch in 0..sweeps.sources.div_ceil(BATCH) {
-                        let boxes = BATCH.min(sweeps.sources - batch * BATCH);
-                        let blocks = &mut even[batch * BATCH * BLOCK..][..boxes * BLOCK];
-                        from_lanes(waves(batch), self.waves, first, count, blocks);
-                    }
-                    even[sweeps.sources * BLOCK..].fill(0.0);
-                    let factors = &self.factors[chunk * 6 * CHUNK..][..6 * CHUNK];
-                    for axis in 0..3 {
-                        let links = &sweeps.axes[axis];
-                        odd.resize((links.len() + 1) * BLOCK, 0.0);
-                        odd[links.len() * BLOCK..].fill(0.0);
-                        let turn = &factors[2 * axis * CHUNK..][..2 * CHUNK];
-                        dispatch(Sweep {
-                            axis,
-                            links,
-                            turn,
-                            from: even,
-                            to: odd,
-                        });
-                        std::mem::swap(even, odd);
-                    }
-                    let boxes = &even[..sweeps.axes[2].len() * BLOCK];
-                    for (boxes, out) in boxes
-                        .chunks(BATCH * BLOCK)
-                        .zip(out.chunks_exact_mut(BLOCK * BATCH))
-                    {
-                        to_lanes(boxes, out);
-                    }
-                },
-            );
+    /// `waves` has `fields` fields of each batch, `[class of x][class of y][wave][class of z][8]`; the result is `[field][chunk]`
+    /// `[receiver along y][class][CHUNK]` with a none of zeros behind the receivers.
+    pub fn sweep(&self, slab: &Slab, fields: usize, waves: &[f64], swept: &mut Vec<f64>) {
+        let field_len = CLASSES * self.waves * BATCH;
+        let len = (slab.y.len() + 1) * BLOCK;
+        swept.resize(fields * self.chunks() * len, 0.0);
+        let blocks = || (Vec::new(), Vec::new());
+        swept.par_chunks_exact_mut(len).enumerate().for_each_init(
+            blocks,
+            |(own, after_x), (at, swept)| {
+                let (field, chunk) = (at / self.chunks(), at % self.chunks());
+                let first = chunk * CHUNK;
+                let count = CHUNK.min(self.waves - first);
+                own.resize((slab.sources.len() + 1) * BLOCK, 0.0);
+                own[slab.sources.len() * BLOCK..].fill(0.0);
+                after_x.resize((slab.x.len() + 1) * BLOCK, 0.0);
+                after_x[slab.x.len() * BLOCK..].fill(0.0);
+                swept[slab.y.len() * BLOCK..].fill(0.0);
+                let own_blocks = own[..slab.sources.len() * BLOCK].chunks_mut(BATCH * BLOCK);
+                for (batch, blocks) in own_blocks.enumerate() {
+                    let lanes = &waves[(batch * fields + field) * field_len..][..field_len];
+                    from_lanes(lanes, self.waves, first, count, blocks);
+                }
+                let turn =
+                    |axis: usize| &self.factors[(chunk * 6 + 2 * axis) * CHUNK..][..2 * CHUNK];
+                dispatch(Sweep {
+                    axis: 0,
+                    links: &slab.x,
+                    turn: turn(0),
+                    from: &[own],
+                    to: after_x,
+                });
+                dispatch(Sweep {
+                    axis: 1,
+                    links: &slab.y,
+                    turn: turn(1),
+                    from: &[after_x],
+                    to: swept,
+                });
+            },
+        );
     }
 
-    /// The field of one batch of targets, `[class of x][class of y][wave][class of z][8]`.
-    pub fn batch(&self, translated: &[f64], batches: usize, batch: usize, waves: &mut [f64]) {
+    /// Sums a slab and those before it, swept, over z: the waves of its targets, `[field][chunk][batch of targets][class of x]`
+    /// `[class of y][CHUNK][class of z][8]`, to be read by [`Self::batch`].
+    pub fn gather(&self, slab: &Slab, fields: usize, swept: &[&[f64]], out: &mut Vec<f64>) {
+        if slab.targets.is_empty() {
+            return;
+        }
+        let len = slab.targets.len().div_ceil(BATCH) * BLOCK * BATCH;
+        out.resize(fields * self.chunks() * len, 0.0);
+        let lens: Vec<usize> = swept
+            .iter()
+            .map(|slab| slab.len() / (fields * self.chunks()))
+            .collect();
+        out.par_chunks_exact_mut(len)
+            .enumerate()
+            .for_each_init(Vec::new, |blocks, (at, out)| {
+                blocks.resize(slab.targets.len() * BLOCK, 0.0);
+                let own = swept
+                    .iter()
+                    .zip(&lens)
+                    .map(|(slab, &len)| &slab[at * len..(at + 1) * len]);
+                let parts: Vec<&[f64]> = own.collect();
+                let turn = &self.factors[(at % self.chunks() * 6 + 4) * CHUNK..][..2 * CHUNK];
+                dispatch(Sweep {
+                    axis: 2,
+                    links: &slab.z,
+                    turn,
+                    from: &parts,
+                    to: blocks,
+                });
+                for (boxes, out) in blocks
+                    .chunks(BATCH * BLOCK)
+                    .zip(out.chunks_exact_mut(BLOCK * BATCH))
+                {
+                    to_lanes(boxes, out);
+                }
+            });
+    }
+
+    /// One field of one batch of targets, `[class of x][class of y][wave][class of z][8]`.
+    pub fn batch(
+        &self,
+        gathered: &[f64],
+        field: usize,
+        batch: usize,
+        batches: usize,
+        waves: &mut [f64],
+    ) {
         let row = 2 * BATCH;
-        for (chunk, blocks) in translated.chunks_exact(self.chunk_len(batches)).enumerate() {
+        let len = batches * BLOCK * BATCH;
+        let chunks = gathered[field * self.chunks() * len..]
+            .chunks_exact(len)
+            .take(self.chunks());
+        for (chunk, blocks) in chunks.enumerate() {
             let first = chunk * CHUNK;
             let count = CHUNK.min(self.waves - first);
             let block = &blocks[batch * BLOCK * BATCH..][..BLOCK * BATCH];
@@ -211,11 +315,25 @@ fn to_lanes(blocks: &[f64], lanes: &mut [f64]) {
 /// The sum over three neighbours along one axis.
 struct Sweep<'a> {
     axis: usize,
-    links: &'a [[u32; 3]],
+    links: &'a [Links],
     /// Cosines, sines of the turns.
     turn: &'a [f64],
-    from: &'a [f64],
+    /// Blocks of the givers, list after list.
+    from: &'a [&'a [f64]],
     to: &'a mut [f64],
+}
+
+/// The block of a giver in the list it is in.
+#[inline(always)]
+fn block<'a>(from: &[&'a [f64]], giver: u32) -> &'a [f64] {
+    let mut at = giver as usize * BLOCK;
+    for &list in from {
+        if at < list.len() {
+            return &list[at..at + BLOCK];
+        }
+        at -= list.len();
+    }
+    unreachable!("links point to givers")
 }
 
 impl WithIsa for Sweep<'_> {
@@ -225,7 +343,7 @@ impl WithIsa for Sweep<'_> {
     fn with_isa<S: Isa>(self, simd: S) {
         let apart = [4, 2, 1][self.axis] * CHUNK;
         for (links, to) in self.links.iter().zip(self.to.chunks_exact_mut(BLOCK)) {
-            let [low, own, high] = links.map(|giver| &self.from[giver as usize * BLOCK..][..BLOCK]);
+            let [low, own, high] = [0, 1, 2].map(|i| block(self.from, links[i]));
             for pair in 0..CLASSES / 2 {
                 // The classes with a cosine along the axis.
                 let class = [pair, pair + (pair & 2), 2 * pair][self.axis];

@@ -1,5 +1,6 @@
 use std::f64::consts::PI;
 
+use crate::kernel::Stokes;
 use proptest::prelude::*;
 
 use super::*;

@@ -1,0 +1,184 @@
+//! Charges on grids to potentials on grids, by plane waves.
+
+use f64_lanes::{Isa, WithIsa, dispatch};
+use rayon::prelude::*;
+
+use crate::far::Fields;
+use crate::gemm::Into;
+use crate::symbol::Symbol;
+use crate::transfer::GridShape;
+use crate::transform::{BATCH, Scratch, Transform};
+
+/// A transform of grids and what happens to their waves.
+#[derive(Clone, Debug)]
+pub(crate) struct Across {
+    pub transform: Transform,
+    pub symbol: Symbol,
+}
+
+impl Across {
+    /// Waves of the potentials of the boxes of numbers `batches`, of side `side`, batch by batch and in each field by field.
+    pub fn forward(
+        &self,
+        fields: Fields,
+        shape: GridShape,
+        side: f64,
+        boxes: &[&mut [f64]],
+        numbers: &[u32],
+        waves: &mut Vec<f64>,
+    ) {
+        let field = self.transform.waves_len();
+        waves.resize(
+            numbers.len().div_ceil(BATCH) * fields.potentials * field,
+            0.0,
+        );
+        let batches = waves
+            .par_chunks_exact_mut(fields.potentials * field)
+            .zip(numbers.par_chunks(BATCH));
+        let memory = || {
+            (
+                self.transform.scratch(),
+                vec![0.0; fields.densities * field],
+            )
+        };
+        batches.for_each_init(memory, |(scratch, densities), (potentials, batch)| {
+            let transform = &self.transform;
+            dispatch(Forward {
+                transform,
+                shape,
+                boxes,
+                batch,
+                densities,
+                scratch,
+            });
+            dispatch(Multiply {
+                symbol: &self.symbol,
+                side,
+                densities,
+                potentials,
+            });
+        });
+    }
+
+    /// Puts the potentials of waves on the grids of the boxes of these numbers: `waves_of(field, batch, out)` gives a field of a batch.
+    pub fn backward(
+        &self,
+        shape: GridShape,
+        potentials: usize,
+        boxes: &mut [&mut [f64]],
+        numbers: &[u32],
+        waves_of: impl Fn(usize, usize, &mut [f64]) + Sync,
+    ) {
+        // Fields of the boxes in the order of their numbers: each belongs to one task.
+        let mut own: Vec<Option<&mut [f64]>> =
+            boxes.iter_mut().map(|grid| Some(&mut **grid)).collect();
+        let mut tasks: Vec<(usize, usize, Vec<&mut [f64]>)> = Vec::new();
+        for (batch, numbers) in numbers.chunks(BATCH).enumerate() {
+            let first = tasks.len();
+            tasks.extend((0..potentials).map(|field| (field, batch, Vec::with_capacity(BATCH))));
+            for &number in numbers {
+                let grid = own[number as usize]
+                    .take()
+                    .into_iter()
+                    .flat_map(|grid| grid.chunks_exact_mut(shape.field()));
+                for ((_, _, grids), field) in tasks[first..].iter_mut().zip(grid) {
+                    grids.push(field);
+                }
+            }
+        }
+        let memory = || {
+            (
+                self.transform.scratch(),
+                vec![0.0; self.transform.waves_len()],
+            )
+        };
+        tasks
+            .par_iter_mut()
+            .for_each_init(memory, |(scratch, waves), (field, batch, grids)| {
+                waves_of(*field, *batch, waves);
+                dispatch(Backward {
+                    transform: &self.transform,
+                    waves,
+                    grids,
+                    stride: shape.stride(),
+                    scratch,
+                });
+            });
+    }
+}
+
+/// The waves of a batch of boxes.
+struct Forward<'a> {
+    transform: &'a Transform,
+    shape: GridShape,
+    boxes: &'a [&'a mut [f64]],
+    batch: &'a [u32],
+    densities: &'a mut [f64],
+    scratch: &'a mut Scratch,
+}
+
+impl WithIsa for Forward<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_isa<S: Isa>(self, simd: S) {
+        let field = self.shape.field();
+        for (density, waves) in self
+            .densities
+            .chunks_exact_mut(self.transform.waves_len())
+            .enumerate()
+        {
+            let mut grids = [&[][..]; BATCH];
+            for lane in 0..BATCH {
+                // A batch that is not full repeats its last box: nobody reads those lanes.
+                let number = self.batch[lane.min(self.batch.len() - 1)] as usize;
+                grids[lane] = &self.boxes[number][density * field..][..field];
+            }
+            self.transform
+                .forward(simd, grids, self.shape.stride(), waves, self.scratch);
+        }
+    }
+}
+
+/// Densities to potentials.
+struct Multiply<'a> {
+    symbol: &'a Symbol,
+    side: f64,
+    densities: &'a [f64],
+    potentials: &'a mut [f64],
+}
+
+impl WithIsa for Multiply<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_isa<S: Isa>(self, simd: S) {
+        self.symbol
+            .apply(simd, self.side, self.densities, self.potentials);
+    }
+}
+
+/// Waves of a batch to one field of its boxes.
+struct Backward<'a, 'b> {
+    transform: &'a Transform,
+    waves: &'a [f64],
+    grids: &'a mut [&'b mut [f64]],
+    stride: usize,
+    scratch: &'a mut Scratch,
+}
+
+impl WithIsa for Backward<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_isa<S: Isa>(self, simd: S) {
+        let Self {
+            transform,
+            waves,
+            grids,
+            stride,
+            scratch,
+        } = self;
+        transform.backward(simd, waves, grids, stride, Into::Replace, scratch);
+    }
+}

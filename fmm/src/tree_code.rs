@@ -60,12 +60,13 @@ struct Opening {
 }
 
 impl Opening {
-    /// For a relative error of `tolerance`, as measured for random strengths.
-    fn for_tolerance(tolerance: f64, output: Output) -> Self {
-        const DIGITS_PER_PROXY: f64 = 0.75;
-        let derivatives = if output == Output::Velocity { 1.0 } else { 2.0 };
+    /// For a relative error of `tolerance`, as measured for random strengths: every proxy along an axis is worth a digit.
+    fn for_tolerance(tolerance: f64, singularities: Singularities, output: Output) -> Self {
+        let derivatives = usize::from(singularities != Singularities::Stokeslets)
+            + usize::from(output != Output::Velocity);
+        let digits = -tolerance.log10();
         Self {
-            proxies: (derivatives - tolerance.log10() / DIGITS_PER_PROXY).ceil() as usize,
+            proxies: (digits.ceil() as usize).max(2) + derivatives,
             angle: 0.6,
         }
     }
@@ -146,7 +147,7 @@ impl TreeCode {
         direct::precision(Some(tolerance))?;
         check_positions("source position", points.sources)?;
         check_positions("target position", points.targets.unwrap_or(&[]))?;
-        let opening = Opening::for_tolerance(tolerance, output);
+        let opening = Opening::for_tolerance(tolerance, singularities, output);
         Ok(Self::with_opening(
             points,
             singularities,
@@ -163,10 +164,12 @@ impl TreeCode {
         tolerance: f64,
         opening: Opening,
     ) -> Self {
-        // As if grids were as dear as the pairs that proxies cost: leaves then have some hundred points.
+        let proxies = opening.proxies.pow(3) * records_per_proxy(singularities);
+        // What splits boxes of more points: of so many, and some times as many in colleagues.
+        let split = f64::max(500.0, 4.0 * proxies as f64);
         let costs = Costs {
             pair: 1.0,
-            grid: 2e6,
+            grid: 3.7 * split * split,
             point: 0.0,
         };
         let tree = Tree::new(points.sources, points.targets, &costs);

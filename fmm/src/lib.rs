@@ -1,4 +1,26 @@
-//! Fast summation of Stokeslets, stresslets, rotlets and sources.
+//! Fast summation of Stokeslets, stresslets, rotlets and sources of Stokes flow, and of Laplace charges, in free space.
+//!
+//! | what | where |
+//! |---|---|
+//! | sums planned once for their points and applied to any strengths | [`StokesSum`], [`LaplaceSum`] |
+//! | where sources and targets are | [`Points`] |
+//! | what is summed | [`Singularities`], [`Strengths`], [`Stresslets`] |
+//! | what comes out | [`Output`], [`Flow`] |
+//! | sums pair by pair | [`direct`] |
+//! | a tree code, for comparison | [`TreeCode`] |
+//! | what is refused | [`FmmError`] |
+//!
+//! The method is dual-space multilevel kernel splitting (af Klinteberg, Greengard, Jiang, Tornberg 2025, arXiv 2509.21471) on uniform
+//! grids. Inside, from what does not depend on the points to what does:
+//!
+//! | what | modules |
+//! |---|---|
+//! | prolate functions, and the splitting of $B = r/8\pi$ by them | `prolate`, `splitting`, `polynomial` |
+//! | kernels, pair by pair and among plane waves | `kernel`, `far`, `symbol` |
+//! | between points, grids and plane waves | `window`, `gridding`, `transform`, `transfer`, `translate`, `gemm` |
+//! | sizes for a tolerance, and all operators of them | `parameters`, `operators` |
+//! | which boxes have grids | `tree` |
+//! | the two halves of a sum, and both together | `near_field`, `far_field`, `plan` |
 
 mod across;
 pub mod direct;
@@ -22,6 +44,7 @@ mod transfer;
 mod transform;
 mod translate;
 mod tree;
+mod tree_code;
 mod window;
 
 #[doc(inline)]
@@ -30,3 +53,10 @@ pub use error::FmmError;
 pub use fast::{LaplaceSum, Points, StokesSum};
 #[doc(inline)]
 pub use flow::{Flow, Output, Singularities, Strengths, Stresslets};
+#[doc(inline)]
+pub use tree_code::TreeCode;
+
+/// The examples of the README are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

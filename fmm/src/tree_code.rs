@@ -60,13 +60,14 @@ struct Opening {
 }
 
 impl Opening {
-    /// For a relative error of `tolerance`, as measured for random strengths: every proxy along an axis is worth a digit.
+    /// For a relative error of `tolerance`, as measured for random strengths: every proxy along an axis is worth a digit, and large sums cost
+    /// one more than small ones.
     fn for_tolerance(tolerance: f64, singularities: Singularities, output: Output) -> Self {
         let derivatives = usize::from(singularities != Singularities::Stokeslets)
             + usize::from(output != Output::Velocity);
         let digits = -tolerance.log10();
         Self {
-            proxies: (digits.ceil() as usize).max(2) + derivatives,
+            proxies: digits.ceil() as usize + 1 + derivatives,
             angle: 0.6,
         }
     }

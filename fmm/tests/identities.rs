@@ -276,17 +276,15 @@ fn gradients_and_stresses_are_those_of_the_velocity() {
     let (mut found, mut expected) = (Vec::new(), Vec::new());
     let (mut divergences, mut slopes) = (0.0, 0.0);
     for place in 0..places.len() {
-        for i in 0..3 {
-            let mut divergence = 0.0;
-            for j in 0..3 {
-                expected.push(slope(place, j, &|target| flow.velocity[target][i]));
-                found.push(flow.gradient[place][i][j]);
-                let term = slope(place, j, &|target| stresses[target][i][j]);
-                divergence += term;
-                slopes += term * term;
-            }
-            divergences += divergence * divergence;
+        let mut divergence = [0.0; 3];
+        for (i, j) in (0..9).map(|entry| (entry / 3, entry % 3)) {
+            expected.push(slope(place, j, &|target| flow.velocity[target][i]));
+            found.push(flow.gradient[place][i][j]);
+            let term = slope(place, j, &|target| stresses[target][i][j]);
+            divergence[i] += term;
+            slopes += term * term;
         }
+        divergences += dot(divergence, divergence);
     }
     assert!(relative_error(&found, &expected) < 1e-6);
     assert!((divergences / slopes).sqrt() < 1e-6);

@@ -5,6 +5,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::flow::Stresslets;
+use crate::kernel::Stokes;
 
 /// Points and strengths of every kind.
 #[derive(Clone)]
@@ -420,7 +421,7 @@ impl<P: Pair, S: Isa> pulp::WithSimd for On<'_, P, S> {
 
     #[inline(always)]
     fn with_simd<T: pulp::Simd>(self, _: T) {
-        self.0.with_isa(self.1);
+        self.0.with_roots::<S, 3>(self.1);
     }
 }
 
@@ -432,7 +433,6 @@ fn chunk<'a, P>(
     ChunkSum {
         records,
         targets,
-        precision: Precision::Full,
         numbers,
         pair: PhantomData,
     }
@@ -445,9 +445,12 @@ fn instruction_sets_agree() {
     let records = vectors(random, 100 * 16 / 3 + 1).as_flattened()[..1600].to_vec();
     let targets = vectors(random, 77);
     let mut widest = vec![0.0; 13 * CHUNK];
-    dispatch(chunk::<All>(&records, &targets, &mut widest));
+    dispatch_roots(
+        Precision::Full,
+        chunk::<All>(&records, &targets, &mut widest),
+    );
     let mut scalar = vec![0.0; 13 * CHUNK];
-    chunk::<All>(&records, &targets, &mut scalar).with_isa(pulp::Scalar::new());
+    chunk::<All>(&records, &targets, &mut scalar).with_roots::<_, 3>(pulp::Scalar::new());
     let compare = |other: &[f64]| {
         for k in 0..13 {
             for i in k * CHUNK..k * CHUNK + 77 {

@@ -3,6 +3,8 @@
 use std::f64::consts::PI;
 
 use crate::across::Across;
+use rayon::ThreadPoolBuilder;
+
 use crate::error::FmmError;
 use crate::far::Far;
 use crate::parameters::Parameters;
@@ -39,10 +41,9 @@ impl Operators {
         if !(1e-12..=1e-1).contains(&tolerance) {
             return Err(FmmError::Tolerance(tolerance));
         }
-        Ok(Self::with_parameters::<K>(Parameters::for_tolerance(
-            tolerance,
-            K::DERIVATIVES,
-        )))
+        Ok(alone(|| {
+            Self::with_parameters::<K>(Parameters::for_tolerance(tolerance, K::DERIVATIVES))
+        }))
     }
 
     pub fn with_parameters<K: Far>(parameters: Parameters) -> Self {
@@ -87,6 +88,14 @@ impl Operators {
             costs,
             parameters,
         }
+    }
+}
+
+/// Does `work` on one thread: factorisations that are shared between threads depend, in their last digits, on how many there are.
+fn alone<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    match ThreadPoolBuilder::new().num_threads(1).build() {
+        Ok(pool) => pool.install(work),
+        Err(_) => work(),
     }
 }
 

@@ -44,14 +44,14 @@ impl Parameters {
 /// Truncation makes an error of about $3\,\psi(1)/\psi(0)$ in the velocity of Stokeslets, and more by this factor for every derivative: most of
 /// it is at the end of the band and at the end of the residual.
 const TRUNCATION: f64 = 3.0;
-const TRUNCATION_PER_DERIVATIVE: f64 = 7.0;
+const TRUNCATION_PER_DERIVATIVE: f64 = 10.0;
 
 /// Grid points for each that the shortest wave needs at least. With fewer, the grids of children cannot be brought to those of their parents:
 /// measured in whole sums.
 const OVERSAMPLING: f64 = 1.4;
 
 /// Parts of the tolerance.
-const WINDOW_PART: f64 = 0.25;
+const WINDOW_PART: f64 = 0.15;
 const POLYNOMIAL_PART: f64 = 0.3;
 const ROOT_PART: f64 = 0.1;
 

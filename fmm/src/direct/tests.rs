@@ -5,7 +5,6 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::flow::Stresslets;
-use crate::kernel::Stokes;
 
 /// Points and strengths of every kind.
 #[derive(Clone)]

@@ -60,50 +60,41 @@ impl Across {
         });
     }
 
-    /// Puts the potentials of waves on the grids of the boxes of these numbers: `waves_of(field, batch, out)` gives a field of a batch.
+    /// Puts one potential on the grids of the boxes of these numbers: `waves_of(batch, out)` gives the waves of a batch.
     pub fn backward(
         &self,
         shape: GridShape,
-        potentials: usize,
+        potential: usize,
         boxes: &mut [&mut [f64]],
         numbers: &[u32],
-        waves_of: impl Fn(usize, usize, &mut [f64]) + Sync,
+        waves_of: impl Fn(usize, &mut [f64]) + Sync,
     ) {
-        // Fields of the boxes in the order of their numbers: each belongs to one task.
-        let mut own: Vec<Option<&mut [f64]>> =
-            boxes.iter_mut().map(|grid| Some(&mut **grid)).collect();
-        let mut tasks: Vec<(usize, usize, Vec<&mut [f64]>)> = Vec::new();
-        for (batch, numbers) in numbers.chunks(BATCH).enumerate() {
-            let first = tasks.len();
-            tasks.extend((0..potentials).map(|field| (field, batch, Vec::with_capacity(BATCH))));
-            for &number in numbers {
-                let grid = own[number as usize]
-                    .take()
-                    .into_iter()
-                    .flat_map(|grid| grid.chunks_exact_mut(shape.field()));
-                for ((_, _, grids), field) in tasks[first..].iter_mut().zip(grid) {
-                    grids.push(field);
-                }
-            }
-        }
+        let field = potential * shape.field()..(potential + 1) * shape.field();
+        let mut own: Vec<Option<&mut [f64]>> = boxes
+            .iter_mut()
+            .map(|grid| Some(&mut grid[field.clone()]))
+            .collect();
+        let grids = numbers
+            .iter()
+            .filter_map(|&number| own[number as usize].take());
+        let mut grids: Vec<&mut [f64]> = grids.collect();
         let memory = || {
             (
                 self.transform.scratch(),
                 vec![0.0; self.transform.waves_len()],
             )
         };
-        tasks
-            .par_iter_mut()
-            .for_each_init(memory, |(scratch, waves), (field, batch, grids)| {
-                waves_of(*field, *batch, waves);
-                dispatch(Backward {
-                    transform: &self.transform,
-                    waves,
-                    grids,
-                    stride: shape.stride(),
-                    scratch,
-                });
+        let batches = grids.par_chunks_mut(BATCH).enumerate();
+        batches.for_each_init(memory, |(scratch, waves), (batch, grids)| {
+            waves_of(batch, waves);
+            dispatch(Backward {
+                transform: &self.transform,
+                waves,
+                grids,
+                stride: shape.stride(),
+                scratch,
             });
+        });
     }
 }
 

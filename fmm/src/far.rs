@@ -16,7 +16,8 @@ pub(crate) trait Far: Pair {
     const POTENTIALS: usize;
     const DIPOLES: bool;
     const GRADIENTS: bool;
-    /// Derivatives between what Stokeslets drive and the outputs: one for dipoles, one for pressures and gradients.
+    /// Digits of margin: one for dipoles and one for pressures, which are derivatives of what Stokeslets drive, and two for gradients
+    /// whatever drives them.
     const DERIVATIVES: usize;
 
     /// The kernel as products among plane waves.
@@ -56,7 +57,11 @@ impl<const STRENGTHS: usize, const OUTPUTS: usize> Far for Stokes<STRENGTHS, OUT
     const POTENTIALS: usize = if OUTPUTS == 3 { 3 } else { 4 };
     const DIPOLES: bool = STRENGTHS != 3;
     const GRADIENTS: bool = OUTPUTS == 13;
-    const DERIVATIVES: usize = (STRENGTHS != 3) as usize + (OUTPUTS != 3) as usize;
+    const DERIVATIVES: usize = if OUTPUTS == 13 {
+        2
+    } else {
+        (STRENGTHS != 3) as usize + (OUTPUTS == 4) as usize
+    };
 
     fn symbol() -> Vec<Term> {
         symbol::stokes(Self::DENSITIES == 4, Self::POTENTIALS == 4)

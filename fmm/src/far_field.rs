@@ -31,9 +31,9 @@ pub(crate) struct Grids {
     levels: Vec<Vec<f64>>,
     /// Potentials' waves of the sources of one slab.
     waves: Vec<f64>,
-    /// The waves of this slab and the two before, taken over x and y.
-    swept: [Vec<f64>; 3],
-    /// Those of the targets that are served with a slab, taken over z too.
+    /// Potential by potential, the waves of this slab and the two before, taken over x and y.
+    swept: Vec<[Vec<f64>; 3]>,
+    /// One potential's waves of the targets that are served with a slab, taken over z too.
     gathered: Vec<f64>,
 }
 
@@ -173,37 +173,29 @@ impl FarField {
         if depth == 0 {
             let across = &operators.root;
             across.forward(fields, shape, side, &boxes, &[0], waves);
-            let waves_of = |field: usize, _: usize, out: &mut [f64]| {
-                out.copy_from_slice(&waves[field * out.len()..][..out.len()]);
-            };
-            across.backward(shape, fields.potentials, &mut boxes, &[0], waves_of);
+            for (potential, root) in waves.chunks_exact(across.transform.waves_len()).enumerate() {
+                let waves_of = |_, out: &mut [f64]| out.copy_from_slice(root);
+                across.backward(shape, potential, &mut boxes, &[0], waves_of);
+            }
             return;
         }
+        let across = &operators.level;
+        swept.resize_with(fields.potentials, Default::default);
         for (number, slab) in self.levels[depth].iter().enumerate() {
-            let across = &operators.level;
             across.forward(fields, shape, side, &boxes, &slab.sources, waves);
-            swept.rotate_right(1);
-            operators
-                .turns
-                .sweep(slab, fields.potentials, waves, &mut swept[0]);
-            let kept: Vec<&[f64]> = swept[..swept.len().min(number + 1)]
-                .iter()
-                .map(|s| &s[..])
-                .collect();
-            operators
-                .turns
-                .gather(slab, fields.potentials, &kept, gathered);
             let batches = slab.targets.len().div_ceil(BATCH);
-            let waves_of = |field: usize, batch: usize, out: &mut [f64]| {
-                operators.turns.batch(gathered, field, batch, batches, out);
-            };
-            across.backward(
-                shape,
-                fields.potentials,
-                &mut boxes,
-                &slab.targets,
-                waves_of,
-            );
+            for (potential, swept) in swept.iter_mut().enumerate() {
+                swept.rotate_right(1);
+                operators
+                    .turns
+                    .sweep(slab, potential, fields.potentials, waves, &mut swept[0]);
+                operators
+                    .turns
+                    .gather(slab, &swept[..3.min(number + 1)], gathered);
+                let waves_of =
+                    |batch, out: &mut [f64]| operators.turns.batch(gathered, batch, batches, out);
+                across.backward(shape, potential, &mut boxes, &slab.targets, waves_of);
+            }
         }
     }
 

@@ -104,7 +104,9 @@ pub struct StokesSum {
 }
 
 impl StokesSum {
-    /// Plans sums of `singularities` to the `tolerance`, relative in the Euclidean norm over all targets.
+    /// Plans sums of `singularities` to the `tolerance`, relative in the Euclidean norm over all targets, in each output by itself. At
+    /// targets many times farther from the sources than those are from each other, the errors of pressures are up to 5
+    /// and those of gradients up to 20 times that.
     ///
     /// # Errors
     ///

@@ -48,10 +48,10 @@ const TRUNCATION_PER_DERIVATIVE: f64 = 10.0;
 
 /// Grid points for each that the shortest wave needs at least. With fewer, the grids of children cannot be brought to those of their parents:
 /// measured in whole sums.
-const OVERSAMPLING: f64 = 1.4;
+const OVERSAMPLING: f64 = 1.42;
 
 /// Parts of the tolerance.
-const WINDOW_PART: f64 = 0.15;
+const WINDOW_PART: f64 = 0.25;
 const POLYNOMIAL_PART: f64 = 0.3;
 const ROOT_PART: f64 = 0.1;
 

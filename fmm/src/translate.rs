@@ -175,19 +175,25 @@ impl Turns {
         self.waves.div_ceil(CHUNK)
     }
 
-    /// Takes the waves of a slab's sources over x and y.
+    /// Takes one of the `fields` fields of a slab's sources over x and y.
     ///
-    /// `waves` has `fields` fields of each batch, `[class of x][class of y][wave][class of z][8]`; the result is `[field][chunk]`
+    /// `waves` has all fields of each batch, `[class of x][class of y][wave][class of z][8]`; the result is `[chunk]`
     /// `[receiver along y][class][CHUNK]` with a none of zeros behind the receivers.
-    pub fn sweep(&self, slab: &Slab, fields: usize, waves: &[f64], swept: &mut Vec<f64>) {
+    pub fn sweep(
+        &self,
+        slab: &Slab,
+        field: usize,
+        fields: usize,
+        waves: &[f64],
+        swept: &mut Vec<f64>,
+    ) {
         let field_len = CLASSES * self.waves * BATCH;
         let len = (slab.y.len() + 1) * BLOCK;
-        swept.resize(fields * self.chunks() * len, 0.0);
+        swept.resize(self.chunks() * len, 0.0);
         let blocks = || (Vec::new(), Vec::new());
         swept.par_chunks_exact_mut(len).enumerate().for_each_init(
             blocks,
-            |(own, after_x), (at, swept)| {
-                let (field, chunk) = (at / self.chunks(), at % self.chunks());
+            |(own, after_x), (chunk, swept)| {
                 let first = chunk * CHUNK;
                 let count = CHUNK.min(self.waves - first);
                 own.resize((slab.sources.len() + 1) * BLOCK, 0.0);
@@ -200,8 +206,7 @@ impl Turns {
                     let lanes = &waves[(batch * fields + field) * field_len..][..field_len];
                     from_lanes(lanes, self.waves, first, count, blocks);
                 }
-                let turn =
-                    |axis: usize| &self.factors[(chunk * 6 + 2 * axis) * CHUNK..][..2 * CHUNK];
+                let turn = |axis| self.turn(chunk, axis);
                 dispatch(Sweep {
                     axis: 0,
                     links: &slab.x,
@@ -220,33 +225,28 @@ impl Turns {
         );
     }
 
-    /// Sums a slab and those before it, swept, over z: the waves of its targets, `[field][chunk][batch of targets][class of x]`
-    /// `[class of y][CHUNK][class of z][8]`, to be read by [`Self::batch`].
-    pub fn gather(&self, slab: &Slab, fields: usize, swept: &[&[f64]], out: &mut Vec<f64>) {
+    /// Sums one field of a slab and of those before it, swept, over z: the waves of its targets, `[chunk][batch of targets]`
+    /// `[class of x][class of y][CHUNK][class of z][8]`, to be read by [`Self::batch`].
+    pub fn gather(&self, slab: &Slab, swept: &[Vec<f64>], out: &mut Vec<f64>) {
         if slab.targets.is_empty() {
             return;
         }
         let len = slab.targets.len().div_ceil(BATCH) * BLOCK * BATCH;
-        out.resize(fields * self.chunks() * len, 0.0);
-        let lens: Vec<usize> = swept
-            .iter()
-            .map(|slab| slab.len() / (fields * self.chunks()))
-            .collect();
-        out.par_chunks_exact_mut(len)
-            .enumerate()
-            .for_each_init(Vec::new, |blocks, (at, out)| {
+        out.resize(self.chunks() * len, 0.0);
+        out.par_chunks_exact_mut(len).enumerate().for_each_init(
+            Vec::new,
+            |blocks, (chunk, out)| {
                 blocks.resize(slab.targets.len() * BLOCK, 0.0);
-                let own = swept
-                    .iter()
-                    .zip(&lens)
-                    .map(|(slab, &len)| &slab[at * len..(at + 1) * len]);
-                let parts: Vec<&[f64]> = own.collect();
-                let turn = &self.factors[(at % self.chunks() * 6 + 4) * CHUNK..][..2 * CHUNK];
+                let parts = swept.iter().map(|slab| {
+                    let len = slab.len() / self.chunks();
+                    &slab[chunk * len..(chunk + 1) * len]
+                });
+                let (axis, from) = (2, &parts.collect::<Vec<_>>()[..]);
                 dispatch(Sweep {
-                    axis: 2,
+                    axis,
                     links: &slab.z,
-                    turn,
-                    from: &parts,
+                    turn: self.turn(chunk, axis),
+                    from,
                     to: blocks,
                 });
                 for (boxes, out) in blocks
@@ -255,24 +255,19 @@ impl Turns {
                 {
                     to_lanes(boxes, out);
                 }
-            });
+            },
+        );
     }
 
-    /// One field of one batch of targets, `[class of x][class of y][wave][class of z][8]`.
-    pub fn batch(
-        &self,
-        gathered: &[f64],
-        field: usize,
-        batch: usize,
-        batches: usize,
-        waves: &mut [f64],
-    ) {
+    /// Cosines and sines of a chunk's turns along an axis.
+    fn turn(&self, chunk: usize, axis: usize) -> &[f64] {
+        &self.factors[(chunk * 6 + 2 * axis) * CHUNK..][..2 * CHUNK]
+    }
+
+    /// One batch of targets of what was gathered, `[class of x][class of y][wave][class of z][8]`.
+    pub fn batch(&self, gathered: &[f64], batch: usize, batches: usize, waves: &mut [f64]) {
         let row = 2 * BATCH;
-        let len = batches * BLOCK * BATCH;
-        let chunks = gathered[field * self.chunks() * len..]
-            .chunks_exact(len)
-            .take(self.chunks());
-        for (chunk, blocks) in chunks.enumerate() {
+        for (chunk, blocks) in gathered.chunks_exact(batches * BLOCK * BATCH).enumerate() {
             let first = chunk * CHUNK;
             let count = CHUNK.min(self.waves - first);
             let block = &blocks[batch * BLOCK * BATCH..][..BLOCK * BATCH];
@@ -432,12 +427,11 @@ mod tests {
                     }
                 }
                 swept.rotate_right(1);
-                turns.sweep(slab, 1, &lanes, &mut swept[0]);
-                let kept: Vec<&[f64]> = swept[..3.min(number + 1)].iter().map(|s| &s[..]).collect();
-                turns.gather(slab, 1, &kept, &mut gathered);
+                turns.sweep(slab, 0, 1, &lanes, &mut swept[0]);
+                turns.gather(slab, &swept[..3.min(number + 1)], &mut gathered);
                 for (place, &target) in slab.targets.iter().enumerate() {
                     let batches = slab.targets.len().div_ceil(BATCH);
-                    turns.batch(&gathered, 0, place / BATCH, batches, &mut waves);
+                    turns.batch(&gathered, place / BATCH, batches, &mut waves);
                     let mut exact = vec![0.0; len];
                     for (source, field) in sources.iter().zip(&fields) {
                         let step =

@@ -162,10 +162,10 @@ fn print_row(case: &Case, measured: &Measured, peers: [Option<f64>; 3]) {
     let speed = thousands(measured.points_per_second);
     let direct =
         thousands(measured.direct_pairs_per_second * case.threads as f64 / measured.n as f64);
-    let best = peers.into_iter().flatten().fold(direct, f64::max);
+    let best = peers.into_iter().flatten().reduce(f64::max);
     let peers = peers.map(|peer| peer.map_or(String::new(), |rate| format!("{rate:.0}")));
     println!(
-        "| {:?} | {:?} | {} | {:.0e} | {:.1e} | {:.2} | {:.0} | **{speed:.0}** | {direct:.1} | {} | {:.1} |",
+        "| {:?} | {:?} | {} | {:.0e} | {:.1e} | {:.2} | {:.0} | **{speed:.0}** | {direct:.1} | {} | {} |",
         case.kernel,
         case.distribution,
         measured.n,
@@ -174,6 +174,6 @@ fn print_row(case: &Case, measured: &Measured, peers: [Option<f64>; 3]) {
         measured.plan_seconds,
         1e-6 * measured.peak_bytes as f64,
         peers.join(" | "),
-        speed / best,
+        best.map_or(String::new(), |best| format!("{:.1}", speed / best)),
     );
 }

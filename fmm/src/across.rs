@@ -4,7 +4,6 @@ use f64_lanes::{Isa, WithIsa, dispatch};
 use rayon::prelude::*;
 
 use crate::far::Fields;
-use crate::gemm::Into;
 use crate::symbol::Symbol;
 use crate::transfer::GridShape;
 use crate::transform::{BATCH, Scratch, Transform};
@@ -120,10 +119,10 @@ impl WithIsa for Forward<'_> {
             .enumerate()
         {
             let mut grids = [&[][..]; BATCH];
-            for lane in 0..BATCH {
+            for (lane, grid) in grids.iter_mut().enumerate() {
                 // A batch that is not full repeats its last box: nobody reads those lanes.
                 let number = self.batch[lane.min(self.batch.len() - 1)] as usize;
-                grids[lane] = &self.boxes[number][density * field..][..field];
+                *grid = &self.boxes[number][density * field..][..field];
             }
             self.transform
                 .forward(simd, grids, self.shape.stride(), waves, self.scratch);
@@ -170,6 +169,6 @@ impl WithIsa for Backward<'_, '_> {
             stride,
             scratch,
         } = self;
-        transform.backward(simd, waves, grids, stride, Into::Replace, scratch);
+        transform.backward(simd, waves, grids, stride, scratch);
     }
 }

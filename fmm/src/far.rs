@@ -78,18 +78,15 @@ impl<const STRENGTHS: usize, const OUTPUTS: usize> Far for Stokes<STRENGTHS, OUT
             // A stresslet is a force dipole, symmetric, and a sink: T_ijk = S_ij,k + S_ik,j + delta_jk lap B_,i.
             let first = if STRENGTHS == 6 { 0 } else { 3 };
             let (q, n) = (&strength[first..][..3], &strength[first + 3..][..3]);
-            for j in 0..3 {
-                for k in 0..3 {
-                    dipole[j][k] = q[j] * n[k] + n[j] * q[k];
-                }
+            for (j, dipole) in dipole[..3].iter_mut().enumerate() {
+                *dipole = [0, 1, 2].map(|k| q[j] * n[k] + n[j] * q[k]);
                 charge[3] -= q[j] * n[j];
             }
         }
         if STRENGTHS == 13 {
             // A rotlet is an antisymmetric force dipole.
             let t = &strength[9..12];
-            for j in 0..3 {
-                let (k, l) = ((j + 1) % 3, (j + 2) % 3);
+            for (j, k, l) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
                 dipole[j][l] -= 0.5 * t[k];
                 dipole[j][k] += 0.5 * t[l];
             }

@@ -81,12 +81,12 @@ impl FarField {
             grids.resize(level.boxes.len() * len, 0.0);
         }
         for depth in (0..tree.levels.len()).rev() {
-            self.up(operators, fields, tree, charges, grids, depth, len);
+            self.up(operators, fields, tree, charges, grids, depth);
         }
         for depth in 0..tree.levels.len() {
-            self.across(operators, fields, tree, grids, depth, len);
+            self.across(operators, fields, tree, grids, depth);
             if depth > 0 {
-                self.down(operators, fields, tree, grids, depth, len);
+                self.down(operators, fields, tree, grids, depth);
             }
         }
     }
@@ -100,8 +100,8 @@ impl FarField {
         charges: &Charges,
         grids: &mut Grids,
         depth: usize,
-        len: usize,
     ) {
+        let len = operators.shape.len(fields.most());
         let level = &tree.levels[depth];
         let (coarse, fine) = grids.levels.split_at_mut(depth + 1);
         let children = fine.first().map_or(&[][..], |fine| &fine[..]);
@@ -159,8 +159,8 @@ impl FarField {
         tree: &Tree,
         grids: &mut Grids,
         depth: usize,
-        len: usize,
     ) {
+        let len = operators.shape.len(fields.most());
         let side = tree.levels[depth].side;
         let Grids {
             levels,
@@ -207,8 +207,8 @@ impl FarField {
         tree: &Tree,
         grids: &mut Grids,
         depth: usize,
-        len: usize,
     ) {
+        let len = operators.shape.len(fields.most());
         let (coarse, fine) = grids.levels.split_at_mut(depth);
         let parents = &coarse[depth - 1];
         let level = &tree.levels[depth];

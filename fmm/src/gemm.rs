@@ -88,10 +88,10 @@ fn tile<S: Simd, const HIGH: usize, const WIDE: usize>(
         std::array::from_fn(|i| &a.data[(at.row + i) * a.stride..][..at.depth]);
     for k in 0..at.depth {
         let b_row = &b.data[k * b.stride + left..][..WIDE * count];
-        for i in 0..HIGH {
-            let factor = Lanes::splat(simd, a_rows[i][k]);
-            for j in 0..WIDE {
-                sum[i][j] = factor.mul_add(Lanes::load(simd, b_row, j), sum[i][j]);
+        for (sum, a_row) in sum.iter_mut().zip(a_rows) {
+            let factor = Lanes::splat(simd, a_row[k]);
+            for (j, sum) in sum.iter_mut().enumerate() {
+                *sum = factor.mul_add(Lanes::load(simd, b_row, j), *sum);
             }
         }
     }

@@ -167,8 +167,8 @@ impl Transform {
                 for (lane, grid) in grids.iter().enumerate() {
                     for side in 0..2 {
                         let row = &grid[(x * points + y + side) * stride..][..points];
-                        for z in 0..points {
-                            scratch.columns[(2 * z + side) * BATCH + lane] = row[z];
+                        for (z, value) in row.iter().enumerate() {
+                            scratch.columns[(2 * z + side) * BATCH + lane] = *value;
                         }
                     }
                 }
@@ -274,7 +274,7 @@ impl Transform {
         );
     }
 
-    /// Potentials on the grids, added to what is there or in its place: the transpose of [`Self::forward`].
+    /// Potentials on the grids: the transpose of [`Self::forward`].
     #[inline(always)]
     pub fn backward<S: Simd>(
         &self,
@@ -282,7 +282,6 @@ impl Transform {
         waves: &[f64],
         grids: &mut [&mut [f64]],
         stride: usize,
-        into: Into,
         scratch: &mut Scratch,
     ) {
         let points = self.axis.points;
@@ -321,13 +320,8 @@ impl Transform {
                 for (lane, grid) in grids.iter_mut().enumerate() {
                     for side in 0..2 {
                         let row = &mut grid[(x * points + y + side) * stride..][..points];
-                        for z in 0..points {
-                            let value = scratch.columns[(2 * z + side) * BATCH + lane];
-                            row[z] = if into == Into::Add {
-                                row[z] + value
-                            } else {
-                                value
-                            };
+                        for (z, place) in row.iter_mut().enumerate() {
+                            *place = scratch.columns[(2 * z + side) * BATCH + lane];
                         }
                     }
                 }
@@ -452,9 +446,8 @@ mod tests {
             self.transform
                 .forward(simd, grids, self.stride, &mut waves, &mut scratch);
             let mut out: Vec<&mut [f64]> = self.out.iter_mut().map(|grid| &mut grid[..]).collect();
-            let into = Into::Replace;
             self.transform
-                .backward(simd, &waves, &mut out, self.stride, into, &mut scratch);
+                .backward(simd, &waves, &mut out, self.stride, &mut scratch);
             waves
         }
     }

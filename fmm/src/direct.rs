@@ -18,8 +18,8 @@ use crate::kernel::{Chain, Laplace, MOST, Pair, WithKernel, dot, with_stokes};
 /// The flow of `strengths` at `sources`, seen at `targets`, which may be the sources themselves.
 ///
 /// A pair at distance zero contributes nothing, and so does one nearer than 1e-40 of the largest coordinate.
-/// Positions and strengths may have any scale: coordinates up to 1e100 in magnitude are taken, and nothing
-/// overflows or underflows on the way that does not in the result. Without a `tolerance` sums are exact to
+/// Coordinates up to 1e100 in magnitude are taken. Lengths are scaled to the largest coordinate, so that nothing overflows or underflows on the
+/// way but for strengths or distances beyond 1e±150 of that. Without a `tolerance` sums are exact to
 /// rounding; with one (1e-12 to 1e-1) each pair's contribution is, relative to its size, within it.
 /// The result does not depend on the number of threads.
 ///

@@ -32,6 +32,9 @@ pub enum FmmError {
     /// Strengths of a kind the plan was not made for.
     #[error("{0} were given, but the plan was not made for them")]
     Unplanned(&'static str),
+    /// More points than can be counted.
+    #[error("{0} points, expected at most 4294967294 sources and as many targets")]
+    TooMany(usize),
     /// Coordinates too far apart for their differences to be squared.
     #[error("coordinates reach {0:e}, expected at most 1e100 in magnitude")]
     TooFar(f64),

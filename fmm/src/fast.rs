@@ -37,6 +37,10 @@ impl<'a> Points<'a> {
 
     /// The power of two that takes the extent of all points to between 1 and 2, or an error for points that no sum is possible of.
     fn scale(&self) -> Result<f64, FmmError> {
+        let most = self.sources.len().max(self.targets.map_or(0, <[_]>::len));
+        if most >= u32::MAX as usize {
+            return Err(FmmError::TooMany(most));
+        }
         check_positions("source position", self.sources)?;
         check_positions("target position", self.targets.unwrap_or(&[]))?;
         let mut range = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
@@ -104,13 +108,15 @@ pub struct StokesSum {
 }
 
 impl StokesSum {
-    /// Plans sums of `singularities` to the `tolerance`, relative in the Euclidean norm over all targets, in each output by itself. At
-    /// targets many times farther from the sources than those are from each other, the errors of pressures are up to 5
-    /// and those of gradients up to 20 times that.
+    /// Plans sums of `singularities` to the `tolerance`, relative in the Euclidean norm over all targets, in each output by itself, for
+    /// strengths that are as good as random. Where the terms of an output cancel, its error is relative to what they would make if they did not: gradients of
+    /// forces that are all alike, flows of stresslets or of forces that add to nothing seen from far away. Ask for more digits there.
+    ///
+    /// Points nearer than about 1e-40 of the extent of all are taken for one. Points in one place cost all their pairs.
     ///
     /// # Errors
     ///
-    /// Coordinates that are not finite or beyond 1e100, and tolerances outside of 1e-12 to 1e-1.
+    /// Coordinates that are not finite or beyond 1e100, 2^32 - 1 points or more, and tolerances outside of 1e-12 to 1e-1.
     pub fn new(
         points: Points<'_>,
         singularities: Singularities,

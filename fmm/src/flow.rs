@@ -28,6 +28,9 @@ pub struct Strengths<'a> {
 }
 
 /// The two vectors of each stresslet: of the double-layer potential, density times weight and unit normal.
+///
+/// A constant $q$ on a closed surface with outward normals makes the flow $q$ inside and none outside: the double layer jumps by $-q$ on the way
+/// out. $q$ is a velocity times an area, so velocities do not depend on the viscosity; pressures are to be multiplied by it.
 #[derive(Clone, Copy, Debug)]
 pub struct Stresslets<'a> {
     /// $q$.

@@ -28,8 +28,36 @@ pub(crate) struct Scaled {
     pub targets: Option<Vec<[f64; 3]>>,
 }
 
+impl Scaled {
+    /// Whether all points are in one place.
+    fn together(&self) -> bool {
+        let mut all = self.sources.iter().chain(self.targets.iter().flatten());
+        let first = all.next();
+        all.all(|point| Some(point) == first)
+    }
+}
+
+/// Points in one place: none has an effect on any.
+struct Together {
+    targets: usize,
+    outputs: usize,
+}
+
+impl Planned for Together {
+    fn apply(&self, _: Strength<'_>) -> Vec<Vec<f64>> {
+        vec![vec![0.0; self.targets]; self.outputs]
+    }
+}
+
 /// The cheaper of the fast and the direct sum over these points.
 pub(crate) fn plan<K: Far>(points: Scaled, operators: Arc<Operators>) -> Box<dyn Planned> {
+    if points.together() {
+        let targets = points.targets.as_ref().unwrap_or(&points.sources).len();
+        return Box::new(Together {
+            targets,
+            outputs: K::OUTPUTS,
+        });
+    }
     let costs = operators.costs;
     let targets = points.targets.as_ref().unwrap_or(&points.sources);
     let direct = points.sources.len() as f64 * targets.len() as f64 * costs.direct;

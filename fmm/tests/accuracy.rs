@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use common::{Amounts, Cloud, errors, every, in_cube, relative_error, thinned};
 use fastrand::Rng;
-use stokes_fmm::{LaplaceSum, Output, Points, Singularities, StokesSum, direct};
+use stokes_fmm::{LaplaceSum, Output, Points, Singularities, StokesSum, Strengths, direct};
 
 /// So many that the fast way is taken.
 const MANY: usize = 20_000;
@@ -206,6 +206,25 @@ fn coincident_points() {
 
     let points = vec![[0.25, 0.5, 0.125]; MANY / 10];
     distribution("all in one place", &Cloud::of(points, &mut random));
+}
+
+#[test]
+fn points_in_one_place_do_nothing() {
+    for place in [[0.0; 3], [1e-200, 0.0, 1e-200], [3.0, 1e8, -5e-324]] {
+        let points = vec![place; 5000];
+        let forces = vec![[1.0, -2.0, 0.5]; 5000];
+        let strengths = Strengths {
+            stokeslets: Some(&forces),
+            ..Default::default()
+        };
+        let kinds = Singularities::Stokeslets;
+        let sum = StokesSum::new(Points::same(&points), kinds, Output::Gradient, 1e-6)
+            .expect("valid points");
+        let flow = sum.apply(&strengths).expect("valid strengths");
+        assert_eq!(flow.velocity, vec![[0.0; 3]; 5000]);
+        assert_eq!(flow.pressure, vec![0.0; 5000]);
+        assert_eq!(flow.gradient, vec![[[0.0; 3]; 3]; 5000]);
+    }
 }
 
 #[test]

@@ -104,10 +104,18 @@ pub struct Case {
     /// Relative error asked for, from 1e-12 to 1e-1.
     #[arg(long, default_value_t = 1e-6, value_parser = tolerance)]
     pub tolerance: f64,
-    #[arg(long, default_value_t = 1, value_parser = at_least_one)]
+    #[arg(long, default_value_t = 1, value_parser = threads)]
     pub threads: usize,
     #[arg(long, value_enum, default_value_t = Method::Fmm)]
     pub method: Method,
+}
+
+/// As many threads as any machine of ours has.
+fn threads(text: &str) -> Result<usize, String> {
+    match at_least_one(text)? {
+        count @ ..=1024 => Ok(count),
+        _ => Err("expected at most 1024".into()),
+    }
 }
 
 fn at_least_one(text: &str) -> Result<usize, String> {

@@ -411,11 +411,11 @@ impl Potential<GRADIENT, 13> for VelocityPressureGradient {
                     across
                 };
                 let mut sum = triple[0] * moved[0] + across + triple[2] * moved[2];
-                sum = sum + 0.5 * (of_moved[i][l] - of_moved[l][i]);
+                sum += 0.5 * (of_moved[i][l] - of_moved[l][i]);
                 if i == l {
-                    sum = sum + 0.5 * flow[3];
+                    sum += 0.5 * flow[3];
                 }
-                fields[4 + 3 * i + l] = fields[4 + 3 * i + l] + sum;
+                fields[4 + 3 * i + l] += sum;
             }
         }
         fields

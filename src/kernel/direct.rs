@@ -173,11 +173,11 @@ impl<'a, const GRADIENT: bool> WithSimd for Sum<'a, GRADIENT> {
             let both = 6.0 * ef * en * inv;
             let along_e = inv * (both + eg);
             for k in 0..3 {
-                velocity[k] = velocity[k] + along_e.mul_add(e[k], inv * g[k]);
+                velocity[k] += along_e.mul_add(e[k], inv * g[k]);
             }
             // p = 4 (-n.f + 3 (e.f)(e.n))/|d|^3 + 2 (e.g)/|d|^2.
             let isotropic = inv2 * (both + eg);
-            pressure = pressure + (2.0 * isotropic - 4.0 * (inv * inv2 * nf));
+            pressure += 2.0 * isotropic - 4.0 * (inv * inv2 * nf);
             if GRADIENT {
                 // du_k/dx_j = e_k w_j + isotropic delta_kj - g_k e_j/|d|^2.
                 let twist = 6.0 * inv * inv2;
@@ -189,7 +189,7 @@ impl<'a, const GRADIENT: bool> WithSimd for Sum<'a, GRADIENT> {
                     for k in 0..3 {
                         gradient[k][j] = e[k].mul_add(w, gradient[k][j] - away * g[k]);
                     }
-                    gradient[j][j] = gradient[j][j] + isotropic;
+                    gradient[j][j] += isotropic;
                 }
             }
         }

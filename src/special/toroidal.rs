@@ -157,7 +157,7 @@ impl Ladder {
             while n > stop {
                 let [ratio, slope] = self.coefficients.down[n];
                 d_n = (h * slope).mul_add(q_n, d_n * ratio);
-                q_n = q_n + d_n;
+                q_n += d_n;
                 n -= 1;
             }
             d_n = d_n / q_n;
@@ -185,7 +185,7 @@ impl Ladder {
             d[n] = d_n.1;
             let [ratio, slope] = self.coefficients.down[n];
             d_n = (h * slope).mul_add(q_n, d_n * ratio);
-            q_n = q_n + d_n;
+            q_n += d_n;
         }
         q[0] = q_n.1;
         d[0] = d_n.1;

@@ -75,6 +75,7 @@ pub mod body;
 pub mod case;
 pub mod curve;
 pub mod kernel;
+pub mod multibody;
 pub mod output;
 pub mod plane;
 pub mod progress;

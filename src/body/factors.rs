@@ -160,6 +160,14 @@ impl ModalFactors {
         density
     }
 
+    /// Solves in place for columns of mode `n` that are scaled by the roots of the weights, any number of them.
+    pub(crate) fn solve_scaled(&self, n: usize, columns: MatMut<'_, f64>) {
+        let size = self.unknowns * self.unknowns;
+        // The factors are the transposed matrix's.
+        let packed = &self.packed.as_slice()[n * size..][..size];
+        solve_transpose(packed, &self.permutations[n], columns);
+    }
+
     fn scale(&self, columns: &mut [f64], by: impl Fn(f64, f64) -> f64) {
         for component in columns.chunks_mut(self.root_weights.len()) {
             for (x, &root) in component.iter_mut().zip(&self.root_weights) {

@@ -14,7 +14,7 @@ use rustfft::{Fft, FftPlanner};
 
 use super::densities::Densities;
 use super::discretization::Discretization;
-use super::near::bernstein;
+use super::near::{bend, bernstein};
 use super::surface::azimuths;
 use crate::curve::Meridian;
 use crate::kernel::{DENSITIES, SurfacePoint, SurfacePoints};
@@ -38,7 +38,7 @@ pub(super) struct FarFlow {
 
 /// From which separation on the points resolve a panel's action, to a tolerance.
 #[derive(Debug)]
-pub(super) struct Separation {
+pub(crate) struct Separation {
     /// $\chi - 1$ of the rings.
     h: f64,
     /// The parameter of the Bernstein ellipse around each panel.
@@ -70,27 +70,76 @@ impl FarFlow {
 
     /// The separation for an error below `tolerance` relative to the densities.
     pub fn separation(&self, tolerance: f64) -> Separation {
-        let digits = MARGIN - tolerance.ln();
-        // Mode m of the density meets mode count - m of the kernel.
-        let xi = (self.mode_decay.iter().enumerate())
-            .map(|(m, decay)| (decay + digits) / (self.azimuths - m) as f64)
-            .fold(0.0, f64::max);
-        // Degree k of the density leaves 2 order - k to the kernel.
-        let log_rho = |decay: &[f64]| {
-            (decay.iter().enumerate())
-                .map(|(k, decay)| (decay + digits) / (2 * self.order - k) as f64)
-                .fold(0.0, f64::max)
-        };
-        Separation {
-            h: 2.0 * (0.5 * xi).sinh().powi(2),
-            rho: (self.panel_decay.chunks(self.order))
-                .map(|decay| log_rho(decay).exp())
-                .collect(),
-        }
+        Separation::new(
+            tolerance,
+            self.azimuths,
+            &self.mode_decay,
+            self.panel_decay.chunks(self.order),
+        )
     }
 }
 
 impl Separation {
+    /// The separation for an error below `tolerance` relative to densities whose modes, and whose Legendre coefficients on each panel, decay like
+    /// that: logarithms, relative to the largest.
+    fn new<'d>(
+        tolerance: f64,
+        azimuths: usize,
+        mode_decay: &[f64],
+        panel_decay: impl Iterator<Item = &'d [f64]>,
+    ) -> Self {
+        let digits = MARGIN - tolerance.ln();
+        // Mode m of the density meets mode count - m of the kernel.
+        let xi = (mode_decay.iter().enumerate())
+            .map(|(m, decay)| (decay + digits) / (azimuths - m) as f64)
+            .fold(0.0, f64::max);
+        // Degree k of the density leaves 2 order - k to the kernel.
+        let log_rho = |decay: &[f64]| {
+            (decay.iter().enumerate())
+                .map(|(k, x)| (x + digits) / (2 * decay.len() - k) as f64)
+                .fold(0.0, f64::max)
+        };
+        Self {
+            h: 2.0 * (0.5 * xi).sinh().powi(2),
+            rho: panel_decay.map(|decay| log_rho(decay).exp()).collect(),
+        }
+    }
+
+    /// The same for any density that so many modes and the nodes of the panels just resolve to the tolerance.
+    pub fn of_resolved(
+        discretization: &Discretization,
+        n_max: usize,
+        azimuths: usize,
+        tolerance: f64,
+    ) -> Self {
+        let steady = |count: usize| -> Vec<f64> {
+            (0..count)
+                .map(|k| tolerance.ln() * k as f64 / count as f64)
+                .collect()
+        };
+        let along = steady(discretization.order());
+        let panels = discretization.panels().len();
+        Self::new(
+            tolerance,
+            azimuths,
+            &steady(n_max + 1),
+            std::iter::repeat_n(&along[..], panels),
+        )
+    }
+
+    /// The largest distance from a sphere of the given radius about the body, which it fits in, at which anything is not kept.
+    pub fn reach(&self, discretization: &Discretization, radius: f64) -> f64 {
+        // On rings: d^2 < 2 h r (r + d).
+        let hr = self.h * radius;
+        let around = hr + (hr * hr + 2.0 * hr * radius).sqrt();
+        // On panels: the sum of the distances from both ends is at most this; a bend only makes the ellipse narrower.
+        let along = self.rho.iter().enumerate().map(|(panel, rho)| {
+            let rho = rho.powf(bend(discretization, panel));
+            0.25 * (rho + 1.0 / rho) * discretization.arc_length(panel)
+        });
+        along.fold(around, f64::max)
+    }
+
     /// Whether the points resolve what a panel does to a target.
     pub fn is_kept(&self, discretization: &Discretization, target: Meridian, panel: usize) -> bool {
         let around = discretization.nodes_of(panel).iter().all(|node| {

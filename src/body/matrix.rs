@@ -47,10 +47,10 @@ pub struct ModalMatrices {
 }
 
 /// The rows of one target: component `i` of mode `n` is number `3 n + i`.
-type TargetRows<'a> = Vec<&'a mut [f64]>;
+pub(crate) type TargetRows<'a> = Vec<&'a mut [f64]>;
 
 /// The sign with which entry $3 i + j$ of a kernel enters the matrix of the first family.
-const SIGN: [f64; 9] = [1.0, -1.0, 1.0, 1.0, 1.0, 1.0, 1.0, -1.0, 1.0];
+pub(crate) const SIGN: [f64; 9] = [1.0, -1.0, 1.0, 1.0, 1.0, 1.0, 1.0, -1.0, 1.0];
 
 /// Consecutive columns that stand one after the other in a block, too.
 struct Run {
@@ -105,17 +105,10 @@ impl ModalMatrices {
         done: &(dyn Fn() + Sync),
     ) -> Result<Self, QuadratureError> {
         let nodes = discretization.nodes().len();
-        let unknowns = 3 * nodes;
-        let mut rows = Storage::zeros((n_max + 1) * unknowns * unknowns);
+        let mut matrices = Self::zeros(discretization, n_max);
         let engine = Modes::new(n_max);
         let rules = NearRules::new(discretization.order(), n_max)?;
-        // Target by target, its three rows of every mode.
-        let mut targets: Vec<TargetRows<'_>> = (0..nodes)
-            .map(|_| Vec::with_capacity(3 * (n_max + 1)))
-            .collect();
-        for (i, row) in rows.as_mut_slice().chunks_mut(unknowns).enumerate() {
-            targets[i % nodes].push(row);
-        }
+        let targets = matrices.rows_by_target();
         targets.into_par_iter().enumerate().try_for_each_init(
             Buffers::default,
             |buffers, (target, mut rows)| {
@@ -127,11 +120,29 @@ impl ModalMatrices {
                 Ok(())
             },
         )?;
-        Ok(Self {
+        Ok(matrices)
+    }
+
+    /// Matrices of zeros.
+    pub(crate) fn zeros(discretization: &Discretization, n_max: usize) -> Self {
+        let unknowns = 3 * discretization.nodes().len();
+        Self {
             modes: n_max + 1,
             unknowns,
-            rows,
-        })
+            rows: Storage::zeros((n_max + 1) * unknowns * unknowns),
+        }
+    }
+
+    /// Target by target, its three rows of every mode.
+    pub(crate) fn rows_by_target(&mut self) -> Vec<TargetRows<'_>> {
+        let nodes = self.unknowns / 3;
+        let mut targets: Vec<TargetRows<'_>> = (0..nodes)
+            .map(|_| Vec::with_capacity(3 * self.modes))
+            .collect();
+        for (i, row) in self.rows.as_mut_slice().chunks_mut(self.unknowns).enumerate() {
+            targets[i % nodes].push(row);
+        }
+        targets
     }
 
     /// The operator applied to a density: its values at the nodes, in the modes that matrices and density share.
@@ -157,6 +168,18 @@ impl ModalMatrices {
             }
         }
         values
+    }
+
+    /// The operator of mode `n` on columns that are scaled by the roots of the weights, any number of them.
+    pub(crate) fn apply_scaled(&self, n: usize, columns: MatRef<'_, f64>, out: MatMut<'_, f64>) {
+        matmul(
+            out,
+            Accum::Replace,
+            self.transposed(n).transpose(),
+            columns,
+            1.0,
+            Par::Seq,
+        );
     }
 
     /// Adds to mode `n` the orthogonal projection, in $L^2$ of the surface, onto a field of that mode: a matrix of rank one. `field`

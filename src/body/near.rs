@@ -156,6 +156,11 @@ fn ellipse(distances: [f64; 2], length: f64, turning: f64) -> f64 {
     (half + (half * half - 1.0).sqrt()).powf(1.0 / (1.0 + BEND * turning))
 }
 
+/// Which root a panel's bend takes of the parameter at the worst.
+pub(crate) fn bend(discretization: &Discretization, panel: usize) -> f64 {
+    1.0 + BEND * discretization.turning(panel)
+}
+
 impl NearRules {
     /// Rules for panels of `order` nodes and modes up to `n_max`.
     pub fn new(order: usize, n_max: usize) -> Result<Self, QuadratureError> {
@@ -279,6 +284,23 @@ impl NearRules {
     ) -> Result<(), QuadratureError> {
         near.clear();
         self.cut(discretization, sight, panel, stretch, near)
+    }
+
+    /// The same for the whole panel, densities interpolated from all of its nodes.
+    pub fn fill_panel_off_curve(
+        &self,
+        discretization: &Discretization,
+        sight: &Sight,
+        panel: usize,
+        near: &mut NearNodes,
+    ) -> Result<(), QuadratureError> {
+        let domain = offsets(discretization, sight, panel);
+        let whole = Stretch {
+            range: domain,
+            domain,
+            basis: discretization.basis(),
+        };
+        self.fill_off_curve(discretization, sight, panel, &whole, near)
     }
 
     fn cut(

@@ -148,6 +148,25 @@ impl SurfaceModes {
         sum
     }
 
+    /// All components, each number times the square root of its node's quadrature weight.
+    pub(crate) fn scaled_by_roots(&self, discretization: &Discretization) -> Vec<f64> {
+        let mut values = self.values.clone();
+        scale_by_roots(&mut values, discretization, |x, root| x * root);
+        values
+    }
+
+    /// The field whose components times those roots are given.
+    pub(crate) fn from_scaled(discretization: &Discretization, scaled: &[f64]) -> Self {
+        let nodes = discretization.nodes().len();
+        let mut values = scaled.to_vec();
+        scale_by_roots(&mut values, discretization, |x, root| x / root);
+        Self {
+            modes: values.len() / (6 * nodes),
+            nodes,
+            values,
+        }
+    }
+
     /// The field plus another one, on the same nodes, times a number.
     pub fn plus(mut self, factor: f64, other: &Self) -> Self {
         debug_assert_eq!(self.nodes, other.nodes);
@@ -215,5 +234,18 @@ impl SurfaceModes {
         self.families(n)
             .iter()
             .fold(0.0, |most, x| most.max(x.abs()))
+    }
+}
+
+fn scale_by_roots(
+    values: &mut [f64],
+    discretization: &Discretization,
+    by: impl Fn(f64, f64) -> f64,
+) {
+    let nodes = discretization.nodes();
+    for component in values.chunks_mut(nodes.len()) {
+        for (x, node) in component.iter_mut().zip(nodes) {
+            *x = by(*x, node.weight.sqrt());
+        }
     }
 }

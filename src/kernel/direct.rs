@@ -202,6 +202,71 @@ impl<'a, const GRADIENT: bool> WithSimd for Sum<'a, GRADIENT> {
     }
 }
 
+/// The velocity at `target` of $w_D D + w_S S$ over points, of weights $[w_D, w_S]$ and one density; the arrays are whole registers long.
+pub(crate) fn layer_velocity(
+    weights: [f64; 2],
+    position: [&[f64]; 3],
+    normal: [&[f64]; 3],
+    strength: [&[f64]; 3],
+    target: Point3<f64>,
+) -> Vector3<f64> {
+    Arch::new().dispatch(LayerVelocity {
+        weights,
+        position,
+        normal,
+        strength,
+        target,
+    })
+}
+
+struct LayerVelocity<'a> {
+    weights: [f64; 2],
+    position: [&'a [f64]; 3],
+    normal: [&'a [f64]; 3],
+    strength: [&'a [f64]; 3],
+    target: Point3<f64>,
+}
+
+impl WithSimd for LayerVelocity<'_> {
+    type Output = Vector3<f64>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Vector3<f64> {
+        let splat = |x| Lanes::splat(simd, x);
+        let [double, single] = [splat(6.0 * self.weights[0]), splat(self.weights[1])];
+        let target = [
+            splat(self.target.x),
+            splat(self.target.y),
+            splat(self.target.z),
+        ];
+        let [x, y, z] = self.position.map(|buffer| S::as_simd_f64s(buffer).0);
+        let [nx, ny, nz] = self.normal.map(|buffer| S::as_simd_f64s(buffer).0);
+        let [fx, fy, fz] = self.strength.map(|buffer| S::as_simd_f64s(buffer).0);
+        let mut velocity = [splat(0.0); 3];
+        let one = splat(1.0);
+        for i in 0..x.len() {
+            let d = [
+                target[0] - Lanes(simd, x[i]),
+                target[1] - Lanes(simd, y[i]),
+                target[2] - Lanes(simd, z[i]),
+            ];
+            let f = [Lanes(simd, fx[i]), Lanes(simd, fy[i]), Lanes(simd, fz[i])];
+            let n = [Lanes(simd, nx[i]), Lanes(simd, ny[i]), Lanes(simd, nz[i])];
+            let inv2 = one / dot(&d, &d);
+            let inv = inv2.sqrt();
+            let (df, dn) = (dot(&d, &f), dot(&d, &n));
+            // (6 w_D (d.n)/|d|^5 + w_S/|d|^3) (d.f) d + w_S f/|d|.
+            let along = (double * dn).mul_add(inv2, single) * df * inv2 * inv;
+            let straight = single * inv;
+            for k in 0..3 {
+                velocity[k] += along.mul_add(d[k], straight * f[k]);
+            }
+        }
+        let factor = 1.0 / (8.0 * PI);
+        Vector3::from_fn(|k, _| factor * velocity[k].sum())
+    }
+}
+
 #[inline(always)]
 fn dot<S: Simd>(a: &[Lanes<S>; 3], b: &[Lanes<S>; 3]) -> Lanes<S> {
     a[0].mul_add(b[0], a[1].mul_add(b[1], a[2] * b[2]))

@@ -1,0 +1,291 @@
+//! Points of one body that are near another: where the sum over points does not resolve what some panels do.
+//!
+//! There the panels' exact action takes the place of their points'. It is a linear map of the density: its rows are kept where memory allows, and
+//! made anew each time where it does not.
+
+use nalgebra::{Point3, Vector3};
+use panel_quadrature::QuadratureError;
+use rayon::prelude::*;
+
+use super::tables::Member;
+use crate::body::far::Separation;
+use crate::body::flow::meridian;
+use crate::body::influence::Buffers;
+use crate::body::surface_grid::PointVectors;
+
+/// The points of one body that are near one other body.
+#[derive(Debug)]
+pub(crate) struct Visit {
+    /// The other body.
+    source: usize,
+    points: Vec<NearPoint>,
+    /// The panels of all points.
+    panels: Vec<u32>,
+    /// The rows of all points, or none if they are made each time.
+    rows: Option<Vec<f64>>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct NearPoint {
+    /// Its number among the points of its own body.
+    index: usize,
+    /// Where it is, in the frame of the other body.
+    at: Point3<f64>,
+    /// How many of the panels are its own.
+    panels: usize,
+}
+
+/// All that is near, body by body.
+#[derive(Debug)]
+pub(crate) struct Near {
+    visits: Vec<Vec<Visit>>,
+    /// Bytes of the rows that are kept.
+    pub stored: usize,
+    /// Bytes that the others would take.
+    pub recomputed: usize,
+}
+
+/// A thread's buffers.
+#[derive(Debug, Default)]
+struct Room {
+    buffers: Buffers,
+    rows: Vec<f64>,
+}
+
+impl Near {
+    /// Finds what the points do not resolve to `tolerance`, and makes the rows as far as they fit into `memory` bytes.
+    ///
+    /// # Errors
+    /// If a quadrature rule is missing.
+    pub fn new(
+        members: &[Member],
+        tolerance: f64,
+        memory: usize,
+        done: &(dyn Fn(usize) + Sync),
+    ) -> Result<Self, QuadratureError> {
+        let surroundings: Vec<Surrounding> = members
+            .par_iter()
+            .map(|member| Surrounding::new(member, tolerance))
+            .collect();
+        let mut visits: Vec<Vec<Visit>> = (0..members.len())
+            .into_par_iter()
+            .map(|body| visits(members, &surroundings, body))
+            .collect();
+        let (mut stored, mut recomputed) = (0, 0);
+        for visit in visits.iter_mut().flatten() {
+            let bytes = 8 * visit.len(members);
+            if stored + bytes <= memory {
+                stored += bytes;
+                visit.rows = Some(Vec::new());
+            } else {
+                recomputed += bytes;
+            }
+        }
+        let rows = |room: &mut Room, visits: &mut Vec<Visit>| {
+            for visit in visits {
+                visit.fill(members, room)?;
+            }
+            done(1);
+            Ok(())
+        };
+        visits
+            .par_iter_mut()
+            .try_for_each_init(Room::default, rows)?;
+        Ok(Self {
+            visits,
+            stored,
+            recomputed,
+        })
+    }
+
+    /// Adds, to the velocities of a body's points in the laboratory (`velocity(point)`), what is exact less what the points of the panels do:
+    /// `fields` and `strengths` are the densities of all bodies, as modes and at their points.
+    pub fn correct<'f>(
+        &self,
+        members: &[Member],
+        body: usize,
+        field: impl Fn(usize) -> &'f [f64],
+        strengths: &[PointVectors],
+        velocity: &mut [[f64; 3]],
+    ) -> Result<(), QuadratureError> {
+        let mut room = Room::default();
+        for visit in &self.visits[body] {
+            visit.correct(members, field(visit.source), &strengths[visit.source], velocity, &mut room)?;
+        }
+        Ok(())
+    }
+
+    /// Points that are near another body, counted once for each.
+    pub fn points(&self) -> usize {
+        let visits = self.visits.iter().flatten();
+        visits.map(|visit| visit.points.len()).sum()
+    }
+}
+
+/// From where on a body is resolved, and how far from its centre that may be.
+struct Surrounding {
+    separation: Separation,
+    /// In the laboratory, of the sphere about the centre that the body fits in.
+    radius: f64,
+    /// In the laboratory, the distance from that sphere beyond which everything is resolved.
+    reach: f64,
+}
+
+impl Surrounding {
+    fn new(member: &Member, tolerance: f64) -> Self {
+        let tables = &member.tables;
+        let separation = Separation::of_resolved(
+            &tables.discretization,
+            tables.n_max,
+            tables.grid.azimuths(),
+            tolerance,
+        );
+        let radius = tables.discretization.size();
+        let scale = member.frame.scale();
+        Self {
+            reach: scale * separation.reach(&tables.discretization, radius),
+            radius: scale * radius,
+            separation,
+        }
+    }
+}
+
+/// The other bodies that points of a body are near.
+fn visits(members: &[Member], surroundings: &[Surrounding], body: usize) -> Vec<Visit> {
+    let member = &members[body];
+    let center = member.frame.center();
+    let mut visits = Vec::new();
+    for (source, (other, around)) in members.iter().zip(surroundings).enumerate() {
+        let beyond = around.radius + around.reach;
+        let distance = (other.frame.center() - center).norm();
+        if source == body || distance > beyond + surroundings[body].radius {
+            continue;
+        }
+        let visit = visit(member, source, other, around, beyond);
+        if !visit.points.is_empty() {
+            visits.push(visit);
+        }
+    }
+    visits
+}
+
+fn visit(member: &Member, source: usize, other: &Member, around: &Surrounding, beyond: f64) -> Visit {
+    let grid = &member.tables.grid;
+    let discretization = &other.tables.discretization;
+    let beyond = beyond / other.frame.scale();
+    let mut visit = Visit {
+        source,
+        points: Vec::new(),
+        panels: Vec::new(),
+        rows: None,
+    };
+    for (index, place) in grid.places().enumerate() {
+        let at = other
+            .frame
+            .point_to_body(member.frame.point_to_lab(grid.position(place)));
+        if at.coords.norm() > beyond {
+            continue;
+        }
+        let seen = meridian(&at);
+        let before = visit.panels.len();
+        let panels = 0..discretization.panels().len();
+        visit.panels.extend(
+            panels
+                .filter(|&panel| !around.separation.is_kept(discretization, seen, panel))
+                .map(|panel| panel as u32),
+        );
+        let panels = visit.panels.len() - before;
+        if panels > 0 {
+            visit.points.push(NearPoint { index, at, panels });
+        }
+    }
+    visit
+}
+
+impl Visit {
+    /// How many numbers all rows together have.
+    fn len(&self, members: &[Member]) -> usize {
+        let tables = &members[self.source].tables;
+        tables
+            .influence
+            .len(&tables.discretization, self.panels.len())
+    }
+
+    /// Makes the rows, if they are to be kept.
+    fn fill(&mut self, members: &[Member], room: &mut Room) -> Result<(), QuadratureError> {
+        let length = self.len(members);
+        let Some(rows) = &mut self.rows else {
+            return Ok(());
+        };
+        rows.resize(length, 0.0);
+        let tables = &members[self.source].tables;
+        let (mut panels, mut rest) = (&self.panels[..], &mut rows[..]);
+        for point in &self.points {
+            let (own, others) = panels.split_at(point.panels);
+            let length = tables.influence.len(&tables.discretization, own.len());
+            let (rows, others_rows) = std::mem::take(&mut rest).split_at_mut(length);
+            tables.influence.fill(
+                &tables.discretization,
+                tables.weights,
+                point.at,
+                own,
+                &mut room.buffers,
+                rows,
+            )?;
+            (panels, rest) = (others, others_rows);
+        }
+        Ok(())
+    }
+
+    fn correct(
+        &self,
+        members: &[Member],
+        field: &[f64],
+        strengths: &PointVectors,
+        velocity: &mut [[f64; 3]],
+        room: &mut Room,
+    ) -> Result<(), QuadratureError> {
+        let member = &members[self.source];
+        let tables = &member.tables;
+        let (influence, discretization) = (&tables.influence, &tables.discretization);
+        let (mut panels, mut kept) = (&self.panels[..], self.rows.as_deref());
+        for point in &self.points {
+            let (own, others) = panels.split_at(point.panels);
+            panels = others;
+            let length = influence.len(discretization, own.len());
+            let rows = match &mut kept {
+                Some(rows) => {
+                    let (mine, others) = rows.split_at(length);
+                    *rows = others;
+                    mine
+                }
+                None => {
+                    room.rows.resize(length, 0.0);
+                    influence.fill(
+                        discretization,
+                        tables.weights,
+                        point.at,
+                        own,
+                        &mut room.buffers,
+                        &mut room.rows[..length],
+                    )?;
+                    &room.rows[..length]
+                }
+            };
+            let mut exact = influence.velocity(discretization, rows, own, field, point.at);
+            for &panel in own {
+                exact -= tables.grid.panel_velocity(
+                    panel as usize,
+                    tables.weights,
+                    strengths,
+                    point.at,
+                );
+            }
+            let correction: Vector3<f64> = member.frame.vector_to_lab(exact);
+            for k in 0..3 {
+                velocity[point.index][k] += correction[k];
+            }
+        }
+        Ok(())
+    }
+}

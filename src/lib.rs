@@ -67,6 +67,7 @@
 //! | [`plane`] | the flow in a plane: grids, sections, streamlines |
 //! | [`mod@resistance`] | from a case to the resistance of its shapes |
 //! | [`study`] | the convergence study |
+//! | [`krylov`] | Krylov methods for operators known by their products |
 //! | [`progress`] | how a long computation tells where it is |
 //!
 //! The types of most programs are here at the root too, and [`nalgebra`], whose vectors and points they take.
@@ -76,6 +77,7 @@ pub mod case;
 pub mod curve;
 pub mod kernel;
 pub mod multibody;
+pub mod krylov;
 pub mod output;
 pub mod plane;
 pub mod progress;

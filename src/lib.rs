@@ -120,6 +120,8 @@ pub use curve::{
 #[doc(inline)]
 pub use kernel::{FlowAt, FlowGradientAt, Stokeslet};
 #[doc(inline)]
+pub use multibody::suspension::{Body, Suspension};
+#[doc(inline)]
 pub use progress::{Progress, Silent};
 
 /// The example of the README is a test.

@@ -36,12 +36,14 @@ pub enum Formulation {
 
 impl Formulation {
     fn weights(self, discretization: &Discretization) -> LayerWeights {
-        let [double, single] = match self {
-            Self::CombinedField => [1.0, natural_weight(discretization)],
-            Self::SingleLayer => [0.0, 1.0],
-            Self::InteriorDoubleLayer => [1.0, 0.0],
-        };
-        LayerWeights { double, single }
+        match self {
+            Self::CombinedField => LayerWeights {
+                double: 1.0,
+                single: natural_weight(discretization),
+            },
+            Self::SingleLayer => LayerWeights::SINGLE,
+            Self::InteriorDoubleLayer => LayerWeights::DOUBLE,
+        }
     }
 
     /// The matrices of the equation for modes up to `n_max`.
@@ -100,6 +102,11 @@ impl DirichletSolver {
     /// The nodes.
     pub fn discretization(&self) -> &Discretization {
         &self.discretization
+    }
+
+    /// The factors.
+    pub(crate) fn factors(&self) -> &ModalFactors {
+        &self.factors
     }
 
     /// Modes, counting the zeroth.

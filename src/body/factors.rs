@@ -38,13 +38,13 @@ pub struct Seconds {
 
 /// A permutation and its inverse.
 #[derive(Clone, Debug)]
-struct Permutation {
+pub(crate) struct Permutation {
     forward: Vec<usize>,
     backward: Vec<usize>,
 }
 
 /// Factors an `n` by `n` matrix, given column by column, in its place.
-fn factor_in_place(columns: &mut [f64], n: usize) -> Permutation {
+pub(crate) fn factor_in_place(columns: &mut [f64], n: usize) -> Permutation {
     let (mut forward, mut backward) = (vec![0; n], vec![0; n]);
     let scratch = factor::lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Default::default());
     factor::lu_in_place(
@@ -59,7 +59,7 @@ fn factor_in_place(columns: &mut [f64], n: usize) -> Permutation {
 }
 
 /// Solves with the transpose of the matrix that was factored.
-fn solve_transpose(packed: &[f64], permutation: &Permutation, columns: MatMut<'_, f64>) {
+pub(crate) fn solve_transpose(packed: &[f64], permutation: &Permutation, columns: MatMut<'_, f64>) {
     let n = permutation.forward.len();
     let packed = MatRef::from_column_major_slice(packed, n, n);
     let scratch =

@@ -19,7 +19,9 @@ use super::layers::Layers;
 use super::near::Sight;
 use super::surface::SurfaceModes;
 use crate::curve::{Meridian, ON_SURFACE};
-use crate::kernel::{FlowAt, FlowGradientAt, VelocityPressure, VelocityPressureGradient};
+use crate::kernel::{
+    FlowAt, FlowGradientAt, SurfacePoint, VelocityPressure, VelocityPressureGradient,
+};
 
 /// The flow of densities on a body, for viscosity 1, in the body's frame.
 #[derive(Debug)]
@@ -39,6 +41,15 @@ pub enum Side {
     Exterior,
     /// Inside of the body.
     Interior,
+}
+
+/// What goes with the close panels of a target.
+#[derive(Clone, Copy, Debug)]
+enum Rest {
+    /// The other panels are added.
+    Panels,
+    /// What the panels' points make of them is taken away.
+    Points,
 }
 
 /// Why a flow cannot be evaluated.
@@ -139,6 +150,35 @@ impl<'a> Flow<'a> {
         Ok(traction)
     }
 
+    /// What the points of [`for_each_point`](Self::for_each_point) get wrong near the surface: for every target for which that is more than `tolerance`
+    /// relative to the densities, its place and what is to be added.
+    ///
+    /// # Errors
+    /// If a quadrature rule is missing.
+    pub(crate) fn corrections<const GRADIENT: bool>(
+        &self,
+        targets: &[Point3<f64>],
+        tolerance: f64,
+    ) -> Result<Vec<(usize, FlowGradientAt)>, FlowError> {
+        let far = self.far()?;
+        let separation = far.separation(tolerance);
+        let is_far = self.are_far(targets, &separation);
+        self.evaluate_close::<GRADIENT>(targets, &is_far, far, &separation, Rest::Points)
+    }
+
+    /// The largest distance from the origin at which [`corrections`](Self::corrections) may find anything.
+    pub(crate) fn correction_reach(&self, tolerance: f64) -> Result<f64, FlowError> {
+        let size = self.discretization.size();
+        let separation = self.far()?.separation(tolerance);
+        Ok(size + separation.reach(self.discretization, size))
+    }
+
+    /// The densities as points, times their shares of the surface.
+    pub(crate) fn for_each_point(&self, each: impl FnMut(SurfacePoint)) -> Result<(), FlowError> {
+        self.far()?.points.for_each(each);
+        Ok(())
+    }
+
     fn densities(&self) -> &Densities {
         self.densities
             .get_or_init(|| Densities::new(self.discretization, &self.layers))
@@ -170,12 +210,7 @@ impl<'a> Flow<'a> {
         }
         let far = self.far()?;
         let separation = far.separation(tolerance);
-        let panels = 0..self.discretization.panels().len();
-        let is_far = |target: &Point3<f64>| {
-            let target = meridian(target);
-            (panels.clone()).all(|panel| separation.is_kept(self.discretization, target, panel))
-        };
-        let is_far: Vec<bool> = targets.par_iter().map(is_far).collect();
+        let is_far = self.are_far(targets, &separation);
         let mut found: Vec<FlowGradientAt> = (targets.par_iter().zip(&is_far))
             .map(|(target, &is_far)| {
                 if is_far {
@@ -185,11 +220,22 @@ impl<'a> Flow<'a> {
                 }
             })
             .collect();
-        let close = self.evaluate_close::<GRADIENT>(targets, &is_far, far, &separation)?;
+        let close =
+            self.evaluate_close::<GRADIENT>(targets, &is_far, far, &separation, Rest::Panels)?;
         for (index, at) in close {
             found[index] = at;
         }
         Ok(found)
+    }
+
+    /// Which targets the points of every panel do for.
+    fn are_far(&self, targets: &[Point3<f64>], separation: &Separation) -> Vec<bool> {
+        let panels = 0..self.discretization.panels().len();
+        let is_far = |target: &Point3<f64>| {
+            let target = meridian(target);
+            (panels.clone()).all(|panel| separation.is_kept(self.discretization, target, panel))
+        };
+        targets.par_iter().map(is_far).collect()
     }
 
     /// The targets that are not far, each with its place.
@@ -199,6 +245,7 @@ impl<'a> Flow<'a> {
         is_far: &[bool],
         far: &FarFlow,
         separation: &Separation,
+        rest: Rest,
     ) -> Result<Vec<(usize, FlowGradientAt)>, FlowError> {
         let mut indices: Vec<usize> = (0..targets.len()).filter(|&i| !is_far[i]).collect();
         if indices.is_empty() {
@@ -220,13 +267,14 @@ impl<'a> Flow<'a> {
         let found = rings
             .into_par_iter()
             .map_init(close::Buffers::default, |buffers, ring| {
-                self.ring::<GRADIENT>(targets, ring, far, close, separation, buffers)
+                self.ring::<GRADIENT>(targets, ring, far, close, separation, rest, buffers)
             })
             .collect::<Result<Vec<_>, FlowError>>()?;
         Ok(found.into_iter().flatten().collect())
     }
 
     /// The targets of one ring.
+    #[expect(clippy::too_many_arguments, reason = "one step of `evaluate_close`")]
     fn ring<const GRADIENT: bool>(
         &self,
         targets: &[Point3<f64>],
@@ -234,6 +282,7 @@ impl<'a> Flow<'a> {
         far: &FarFlow,
         close: &CloseFlow,
         separation: &Separation,
+        rest: Rest,
         buffers: &mut close::Buffers,
     ) -> Result<Vec<(usize, FlowGradientAt)>, FlowError> {
         let (discretization, densities) = (self.discretization, self.densities());
@@ -266,8 +315,11 @@ impl<'a> Flow<'a> {
         let mut found = Vec::with_capacity(ring.len());
         for &index in ring {
             let mut at = at_azimuth::<GRADIENT>(&fields, &targets[index]);
-            for panel in (0..count).filter(is_kept) {
-                at += far.points.sum::<GRADIENT>(far.panel(panel), targets[index]);
+            let points =
+                |panel: usize| far.points.sum::<GRADIENT>(far.panel(panel), targets[index]);
+            match rest {
+                Rest::Panels => (0..count).filter(is_kept).for_each(|panel| at += points(panel)),
+                Rest::Points => near.iter().for_each(|&panel| at -= points(panel)),
             }
             found.push((index, at));
         }

@@ -11,6 +11,18 @@ pub struct LayerWeights {
     pub single: f64,
 }
 
+impl LayerWeights {
+    /// The double layer alone, and the single layer alone.
+    pub(crate) const DOUBLE: Self = Self {
+        double: 1.0,
+        single: 0.0,
+    };
+    pub(crate) const SINGLE: Self = Self {
+        double: 0.0,
+        single: 1.0,
+    };
+}
+
 /// Densities on a surface: the flow $D[\sigma] + S[\varrho]$, for viscosity 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layers {

@@ -65,6 +65,21 @@ impl MobilitySolver {
         &self.discretization
     }
 
+    /// The factors.
+    pub(crate) fn factors(&self) -> &ModalFactors {
+        &self.factors
+    }
+
+    /// The surface as a shell.
+    pub fn shell(&self) -> &Shell {
+        &self.shell
+    }
+
+    /// The velocity on the surface of a single layer of modes 0 and 1, all that a rigid motion has.
+    pub(crate) fn single_layer(&self, density: &SurfaceModes) -> SurfaceModes {
+        self.single.apply(&self.discretization, density)
+    }
+
     /// Unknowns of all modes: three components at each node for two families, one for mode 0.
     pub fn unknowns(&self) -> usize {
         self.factors.unknowns()
@@ -81,7 +96,7 @@ impl MobilitySolver {
     pub fn solve(&self, wrench: Wrench, data: SurfaceModes) -> (RigidMotion, Layers) {
         let discretization = &self.discretization;
         let single = self.shell.motion(wrench).on(discretization);
-        let data = data.plus(-1.0, &self.single.apply(discretization, &single));
+        let data = data.plus(-1.0, &self.single_layer(&single));
         let double = self.factors.solve(&data);
         let motion = -self.shell.projection(discretization, &double);
         (motion, Layers { double, single })

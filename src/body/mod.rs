@@ -41,7 +41,7 @@ mod near;
 mod near_tests;
 mod point_sums;
 pub mod problem;
-mod refinement;
+pub(crate) mod refinement;
 pub mod resistance;
 pub mod rigid;
 pub mod shell;

@@ -199,7 +199,7 @@ fn entries_of_check(panels: usize, order: usize, matrices: usize) -> f64 {
 }
 
 /// Modes of the solution that checks one of so many.
-fn checking_modes(modes: usize) -> usize {
+pub(crate) fn checking_modes(modes: usize) -> usize {
     modes + 8.max(modes / 4)
 }
 
@@ -471,7 +471,7 @@ impl<'a> Problem<'a> {
     }
 
     /// The modes that the boundary velocity needs to the tolerance.
-    fn modes_for(&self, panels: &Panels, tolerance: f64) -> Result<usize, ProblemError> {
+    pub(crate) fn modes_for(&self, panels: &Panels, tolerance: f64) -> Result<usize, ProblemError> {
         let least = self.last_exact_mode();
         let Some(slip) = self.slip else {
             return Ok(least);

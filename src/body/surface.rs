@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use num_complex::Complex64;
+use panel_quadrature::QuadratureError;
 use rayon::slice::ParallelSliceMut;
 use rustfft::{Fft, FftPlanner};
 
@@ -165,6 +166,32 @@ impl SurfaceModes {
             nodes,
             values,
         }
+    }
+
+    /// The field at the nodes of another discretization of the same curve, by interpolation along it; without the modes above `n_max`.
+    pub(crate) fn resampled(
+        &self,
+        from: &Discretization,
+        to: &Discretization,
+        n_max: usize,
+    ) -> Result<Self, QuadratureError> {
+        let mut resampled = Self::zero(n_max, to.nodes().len());
+        let order = from.order();
+        let panels = from.panels().as_slice();
+        let mut row = vec![0.0; order];
+        for (k, node) in to.nodes().iter().enumerate() {
+            let after = panels.partition_point(|panel| panel.end < node.s);
+            let index = after.min(panels.len() - 1);
+            let panel = &panels[index];
+            let t = (node.s - panel.start) / (0.5 * panel.length()) - 1.0;
+            from.basis().interpolation_row(t, &mut row)?;
+            for place in 0..6 * self.modes.min(n_max + 1) {
+                let values = &self.values[place * self.nodes + index * order..][..order];
+                resampled.values[place * resampled.nodes + k] =
+                    row.iter().zip(values).map(|(l, x)| l * x).sum();
+            }
+        }
+        Ok(resampled)
     }
 
     /// The field plus another one, on the same nodes, times a number.

@@ -1,7 +1,7 @@
 //! Direct sums of Stokeslets and stresslets over points in space.
 
 use std::f64::consts::PI;
-use std::ops::{AddAssign, Range};
+use std::ops::{AddAssign, Range, SubAssign};
 
 use nalgebra::{Matrix3, Point3, Vector3};
 use pulp::{Arch, Simd, WithSimd};
@@ -50,6 +50,14 @@ impl AddAssign for FlowGradientAt {
         self.velocity += other.velocity;
         self.pressure += other.pressure;
         self.gradient += other.gradient;
+    }
+}
+
+impl SubAssign for FlowGradientAt {
+    fn sub_assign(&mut self, other: Self) {
+        self.velocity -= other.velocity;
+        self.pressure -= other.pressure;
+        self.gradient -= other.gradient;
     }
 }
 
@@ -103,6 +111,23 @@ impl SurfacePoints {
                 double: Vector3::zeros(),
                 single: Vector3::zeros(),
             });
+        }
+    }
+
+    /// Every point, without those that pad registers.
+    pub fn for_each(&self, mut each: impl FnMut(SurfacePoint)) {
+        let vector =
+            |of: &[Vec<f64>; 3], i: usize| Vector3::from(of.each_ref().map(|component| component[i]));
+        for i in 0..self.len() {
+            let normal = vector(&self.normal, i);
+            if normal != Vector3::zeros() {
+                each(SurfacePoint {
+                    position: vector(&self.position, i),
+                    normal,
+                    double: vector(&self.double, i),
+                    single: vector(&self.single, i),
+                });
+            }
         }
     }
 

@@ -5,14 +5,12 @@
 
 use panel_quadrature::QuadratureError;
 use rayon::prelude::*;
-use stokes_fmm::{FmmError, Output, Points, Singularities, StokesSum, Strengths, Stresslets};
+use stokes_fmm::{FmmError, Output, Points, Singularities, Strengths, Stresslets};
 
 use super::near::Near;
+use super::sums::{Planned, Sums};
 use super::tables::{Batches, Layout, Member, multiply};
 use crate::body::surface_grid::PointVectors;
-
-/// The least tolerance of a fast sum, and the largest that is worth having: beyond it sums become no cheaper.
-const TOLERANCES: [f64; 2] = [1e-12, 1e-3];
 
 /// Why the interactions cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -24,6 +22,9 @@ pub enum InteractionError {
     /// A quadrature rule is missing.
     #[error(transparent)]
     Quadrature(#[from] QuadratureError),
+    /// Whoever waited has lost interest.
+    #[error("interrupted")]
+    Interrupted,
 }
 
 /// The interactions of some bodies.
@@ -35,10 +36,9 @@ pub(crate) struct Interactions {
     points: Layout,
     positions: Vec<[f64; 3]>,
     normals: Vec<[f64; 3]>,
-    singularities: Singularities,
     near: Near,
-    /// The sum that was used last.
-    sum: Option<StokesSum>,
+    sums: Sums,
+    planned: Planned,
     own: Vec<f64>,
     strengths: Vec<PointVectors>,
     stokeslets: Vec<[f64; 3]>,
@@ -88,13 +88,13 @@ impl Interactions {
             strengths: members.iter().map(|m| m.tables.grid.vectors()).collect(),
             stokeslets: room(single),
             stresslets: room(double),
-            sum: None,
+            sums: Sums::new(singularities, Output::Velocity),
+            planned: Planned::default(),
             members,
             fields,
             points,
             positions,
             normals,
-            singularities,
         })
     }
 
@@ -138,11 +138,11 @@ impl Interactions {
             }),
             ..Strengths::default()
         };
-        plan(&mut self.sum, &self.positions, self.singularities, tolerance)?;
-        let Some(sum) = &self.sum else {
-            return Ok(());
-        };
-        let mut velocity = sum.apply(&strengths)?.velocity;
+        let points = Points::same(&self.positions);
+        let mut velocity = self
+            .sums
+            .apply(&mut self.planned, points, &strengths, tolerance)?
+            .velocity;
         self.own.copy_from_slice(densities);
         let members = &self.members;
         self.batches
@@ -226,26 +226,4 @@ impl Interactions {
                 },
             );
     }
-}
-
-/// Makes `sum` one that is good to the tolerance, and not to much more.
-fn plan(
-    sum: &mut Option<StokesSum>,
-    positions: &[[f64; 3]],
-    singularities: Singularities,
-    tolerance: f64,
-) -> Result<(), FmmError> {
-    let [least, largest] = TOLERANCES;
-    // Whole digits, so that plans last.
-    let tolerance = 10f64
-        .powf(tolerance.log10().floor())
-        .clamp(least, largest);
-    let serves = |sum: &StokesSum| (sum.tolerance() / tolerance - 1.0).abs() < 0.1;
-    if !sum.as_ref().is_some_and(serves) {
-        // Let go of the one before first: two would take twice the memory.
-        *sum = None;
-        let points = Points::same(positions);
-        *sum = Some(StokesSum::new(points, singularities, Output::Velocity, tolerance)?);
-    }
-    Ok(())
 }

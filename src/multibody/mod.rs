@@ -1,5 +1,110 @@
-//! Many bodies.
+//! Many bodies: what each is asked, and what all of them do together. Everything is in the laboratory's frame and for viscosity 1.
+//!
+//! | module | what |
+//! |---|---|
+//! | [`suspension`] | the question and its answer, with an estimate of the error |
+//! | [`flow`] | the flow at any points |
+//! | [`interactions`] | what bodies do to each other |
 
-pub(crate) mod interactions;
+pub(crate) mod check;
+pub(crate) mod class;
+pub(crate) mod coarse;
+pub mod contact;
+mod descent;
+pub mod flow;
+pub mod interactions;
+mod meridian;
 pub(crate) mod near;
+mod resolution;
+pub(crate) mod solution;
+mod sums;
+pub mod suspension;
+pub(crate) mod system;
 pub(crate) mod tables;
+
+use contact::ContactError;
+use interactions::InteractionError;
+use panel_quadrature::QuadratureError;
+use stokes_fmm::FmmError;
+
+use crate::body::flow::FlowError;
+use crate::curve::CurveError;
+use crate::krylov::Stop;
+
+/// Why a suspension has no answer.
+#[derive(Clone, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SuspensionError {
+    /// There are no bodies.
+    #[error("no bodies: expected at least one")]
+    Empty,
+    /// A curve cannot be divided into panels.
+    #[error("body {body}: {error}")]
+    Curve {
+        /// The first body of that shape.
+        body: usize,
+        /// Why.
+        error: CurveError,
+    },
+    /// Bodies touch or overlap, or their places make no sense.
+    #[error(transparent)]
+    Contact(#[from] ContactError),
+    /// The iteration did not converge.
+    #[error("the iteration ended after {iterations} iterations at a relative residual of {residual:.1e}: expected {wanted:.1e} ({stop:?})")]
+    NotConverged {
+        /// Iterations made.
+        iterations: usize,
+        /// The true residual.
+        residual: f64,
+        /// The residual that was to be reached.
+        wanted: f64,
+        /// Why it ended.
+        stop: Stop,
+    },
+    /// The velocity imposed on a body is not finite.
+    #[error("the velocity imposed on body {body} is not finite everywhere")]
+    Velocity {
+        /// Which body.
+        body: usize,
+    },
+    /// More memory would be needed than there is.
+    #[error("{needed:.1} GiB of memory would be needed for {what}: expected at most {budget:.1} GiB")]
+    Memory {
+        /// For what.
+        what: &'static str,
+        /// How much, in GiB.
+        needed: f64,
+        /// How much there may be, in GiB.
+        budget: f64,
+    },
+    /// The iteration cannot be made.
+    #[error("{0}")]
+    Iteration(String),
+    /// Whoever waited has lost interest.
+    #[error("interrupted")]
+    Interrupted,
+    /// The flow cannot be evaluated.
+    #[error(transparent)]
+    Flow(#[from] FlowError),
+    /// The interactions cannot be computed.
+    #[error(transparent)]
+    Interactions(InteractionError),
+    /// A quadrature rule is missing.
+    #[error(transparent)]
+    Quadrature(#[from] QuadratureError),
+}
+
+impl From<InteractionError> for SuspensionError {
+    fn from(error: InteractionError) -> Self {
+        match error {
+            InteractionError::Interrupted => Self::Interrupted,
+            other => Self::Interactions(other),
+        }
+    }
+}
+
+impl From<FmmError> for SuspensionError {
+    fn from(error: FmmError) -> Self {
+        Self::Interactions(error.into())
+    }
+}

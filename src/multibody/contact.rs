@@ -21,7 +21,7 @@ use crate::curve::{CurveError, GeneratingCurve};
 pub const TOUCHING: f64 = 1e-12;
 
 /// Size of the smallest patches, over the bounding sphere's radius.
-const FINEST: f64 = 0.01;
+const FINEST: f64 = 0.02;
 /// Most patches looked at for a pair.
 const MOST_PATCHES: usize = 200_000;
 /// Most starts of the minimisation.
@@ -385,7 +385,7 @@ fn gap(bodies: &[Located<'_>], pair: [usize; 2], reach: f64) -> Option<Gap> {
             return Some(crossing(patch.middle));
         }
         // Far from the second body patches need not be small to tell where its nearest point is.
-        let enough = finest.map(|finest| finest.max(0.1 * best.min(radius)));
+        let enough = finest.map(|finest| finest.max(0.2 * best.min(radius)));
         let [along, around] = patch.cut([enough[0].min(first.length() / 64.0), enough[1]]);
         if !(along || around) || looked >= MOST_PATCHES {
             leaves.push(patch);
@@ -410,16 +410,20 @@ fn gap(bodies: &[Located<'_>], pair: [usize; 2], reach: f64) -> Option<Gap> {
     }
 
     leaves.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-    let mut starts: Vec<Point3<f64>> = Vec::new();
+    let mut starts = 0;
     let mut nearest: Option<Pair> = None;
-    for leaf in &leaves {
+    for (k, leaf) in leaves.iter().enumerate() {
         let so_far = nearest.map_or(f64::INFINITY, |pair| pair.distance());
-        let fresh =
-            |x: &Point3<f64>| (x - leaf.middle).norm() > 8.0 * (leaf.extent[0] + leaf.extent[1]);
-        if starts.len() >= MOST_STARTS || leaf.lower > so_far || !starts.iter().all(fresh) {
+        if starts >= MOST_STARTS || leaf.lower > so_far {
             continue;
         }
-        starts.push(leaf.middle);
+        // Leaves beside a nearer one lead to where that one does.
+        let beside = 3.0 * (leaf.extent[0] + leaf.extent[1]);
+        let near = |other: &Patch| (other.middle - leaf.middle).norm() <= beside;
+        if leaves[..k].iter().any(near) {
+            continue;
+        }
+        starts += 1;
         let found = descend(first, second, leaf.middle);
         if found.distance() < so_far {
             nearest = Some(found);

@@ -235,6 +235,42 @@ fn spheroids_of_chance_agree_with_a_search() {
     assert!(apart >= 10 && apart <= 28, "{apart}");
 }
 
+/// A rim or tip of small radius: the search knows the gap from above, and from below what a disc or needle of no thickness would have.
+#[test]
+fn rims_of_thin_discs() {
+    let mut chance = fastrand::Rng::with_seed(12);
+    let sphere = Spheroid::sphere(0.5).unwrap();
+    for thickness in [0.1, 0.01, 0.001] {
+        let disc = Spheroid::new(thickness, 1.0).unwrap();
+        for case in 0..10 {
+            let n = Vector3::from(direction(&mut chance));
+            let center = n * (1.6 + chance.f64());
+            let axis = direction(&mut chance);
+            let first = at(&disc, [0.0; 3], axis);
+            // The distance of a point from a disc of no thickness.
+            let height = center.dot(&Vector3::from(axis));
+            let beside = (center - Vector3::from(axis) * height).norm();
+            let flat = (beside - 1.0).max(0.0).hypot(height) - 0.5;
+            let found = distance_of(first, at(&sphere, center.into(), Z));
+            assert!(found <= flat + 1e-14, "{thickness} {case} {found} {flat}");
+            assert!(
+                found >= flat - thickness - 1e-14,
+                "{thickness} {case} {found} {flat}"
+            );
+        }
+    }
+    // A rim above a face.
+    let disc = Spheroid::new(0.001, 1.0).unwrap();
+    let tilt = 0.1f64.atan();
+    let first = at(&disc, [0.0; 3], Z);
+    let found = distance_of(
+        first,
+        at(&disc, [1.5, 1.5, 0.0], [1.0, 1.0, 0.1 * 2f64.sqrt()]),
+    );
+    let flat = (1.5 * 2f64.sqrt() - 1.0) * tilt.cos();
+    assert!(found <= flat && found >= flat - 0.002, "{found} {flat}");
+}
+
 #[test]
 fn tori_around_things() {
     let torus = Torus::new(2.0, 0.5).unwrap();
@@ -384,7 +420,7 @@ fn bodies_inside_others() {
         reach: 0.0,
         ..at(&torus, [0.0; 3], Z)
     };
-    assert_eq!(gaps(&[inner, outer]).unwrap(), []);
+    assert!(gaps(&[inner, outer]).unwrap().is_empty());
     // The same body twice.
     assert_ne!(gaps(&[outer, outer]).unwrap()[0].relation, Relation::Apart);
 }

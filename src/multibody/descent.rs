@@ -9,7 +9,7 @@ const STEPS: usize = 100;
 /// Angle between the normals at which points are nearest; the distance is off by its square times a radius of curvature.
 const PARALLEL: f64 = 1e-10;
 /// Step of the differences, over the size of the smaller body.
-const DIFFERENCE: f64 = 1e-6;
+const DIFFERENCE: f64 = 1e-8;
 
 /// A point of the first surface and its nearest point of the second.
 #[derive(Clone, Copy)]
@@ -66,7 +66,7 @@ pub(super) fn descend(first: &Located<'_>, second: &Located<'_>, start: Point3<f
         let columns = Matrix2::from_columns(&[change(u), change(v)]);
         let curvature = (columns + columns.transpose()) * 0.5;
         let eigen = curvature.symmetric_eigen();
-        let floor = (1e-3 * eigen.eigenvalues.amax()).max(0.1 / size);
+        let floor = (1e-9 * eigen.eigenvalues.amax()).max(1e-6 / size);
         let along = eigen.eigenvectors.transpose() * slope;
         let along = along.zip_map(&eigen.eigenvalues, |a, curvature| {
             -a / curvature.abs().max(floor)

@@ -68,6 +68,7 @@
 //! | [`mod@resistance`] | from a case to the resistance of its shapes |
 //! | [`study`] | the convergence study |
 //! | [`krylov`] | Krylov methods for operators known by their products |
+//! | [`multibody`] | gaps between bodies, contact and overlap |
 //! | [`progress`] | how a long computation tells where it is |
 //!
 //! The types of most programs are here at the root too, and [`nalgebra`], whose vectors and points they take.
@@ -78,6 +79,7 @@ pub mod curve;
 pub mod kernel;
 pub mod multibody;
 pub mod krylov;
+pub mod multibody;
 pub mod output;
 pub mod plane;
 pub mod progress;

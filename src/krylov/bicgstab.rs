@@ -12,7 +12,8 @@ pub(super) fn iterate<O: Operator>(
     mut session: Session<'_, O>,
     start: Option<&[f64]>,
 ) -> Result<Outcome, KrylovError<O::Error>> {
-    let (mut x, mut r, mut residual) = session.start(start)?;
+    let mut r = vec![0.0; session.unknowns()];
+    let (mut x, mut residual) = session.start(start, &mut r)?;
     if session.converged(residual) {
         return Ok(session.finish(x, residual, Stop::Converged));
     }

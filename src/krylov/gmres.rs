@@ -86,8 +86,9 @@ impl LeastSquares {
             for k in (0..steps).rev() {
                 let column = &self.columns[k * stride..];
                 self.solution[k] /= column[k];
-                for i in 0..k {
-                    self.solution[i] -= column[i] * self.solution[k];
+                let (above, last) = self.solution.split_at_mut(k);
+                for (y, h) in above.iter_mut().zip(column) {
+                    *y -= h * last[0];
                 }
             }
             let size = self.solution.iter().map(|y| y * y).sum::<f64>().sqrt();
@@ -138,7 +139,8 @@ pub(super) fn iterate<O: Operator>(
     start: Option<&[f64]>,
     restart: usize,
 ) -> Result<Outcome, KrylovError<O::Error>> {
-    let (mut x, r, mut residual) = session.start(start)?;
+    let mut r = vec![0.0; session.unknowns()];
+    let (mut x, mut residual) = session.start(start, &mut r)?;
     if session.converged(residual) {
         return Ok(session.finish(x, residual, Stop::Converged));
     }

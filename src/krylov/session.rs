@@ -45,23 +45,26 @@ impl<'a, O: Operator> Session<'a, O> {
         }
     }
 
-    /// The start and its residual, with the residual's norm over that of the right-hand side.
+    pub(super) fn unknowns(&self) -> usize {
+        self.right_hand_side.len()
+    }
+
+    /// The start, its residual to `r`, and the residual's norm over that of the right-hand side.
     pub(super) fn start(
         &mut self,
         start: Option<&[f64]>,
-    ) -> Result<(Vec<f64>, Vec<f64>, f64), KrylovError<O::Error>> {
-        let n = self.right_hand_side.len();
-        let mut r = vec![0.0; n];
-        self.unit = self.sums.residual(&mut r, self.scale, self.right_hand_side);
-        let mut x = vec![0.0; n];
+        r: &mut [f64],
+    ) -> Result<(Vec<f64>, f64), KrylovError<O::Error>> {
+        self.unit = self.sums.residual(r, self.scale, self.right_hand_side);
+        let mut x = vec![0.0; self.unknowns()];
         let mut residual = 1.0;
         if let Some(start) = start.filter(|start| start.iter().any(|&x| x != 0.0)) {
             x.copy_from_slice(start);
             scale(&mut x, self.scale);
-            residual = self.true_residual(&x, &mut r)?;
+            residual = self.true_residual(&x, r)?;
         }
         self.history.push(residual);
-        Ok((x, r, residual))
+        Ok((x, residual))
     }
 
     pub(super) fn iterations(&self) -> usize {

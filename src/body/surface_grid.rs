@@ -333,8 +333,7 @@ mod tests {
                 let d = x - grid.position(source);
                 let r = d.norm();
                 let q = Vector3::from(strengths.each_ref().map(|s| s[source]));
-                let stresslet =
-                    6.0 * d * d.dot(&q) * d.dot(&grid.normal(source)) / r.powi(5);
+                let stresslet = 6.0 * d * d.dot(&q) * d.dot(&grid.normal(source)) / r.powi(5);
                 sum += stresslet + weights.single * (q / r + d * d.dot(&q) / r.powi(3));
             }
             for j in 0..3 {
@@ -343,8 +342,7 @@ mod tests {
         }
         let mut expected = vec![0.0; field.len()];
         grid.add_modes(&velocity, &mut scratch, &mut expected);
-        let matrices =
-            ModalMatrices::of_point_sum(&discretization, weights, 4, grid.azimuths());
+        let matrices = ModalMatrices::of_point_sum(&discretization, weights, 4, grid.azimuths());
         let found = matrices.apply(&discretization, &modes);
         for (a, b) in expected.iter().zip(found.scaled_by_roots(&discretization)) {
             assert!((a - b).abs() < 1e-14, "{a} against {b}");

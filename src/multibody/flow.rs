@@ -6,11 +6,11 @@ use stokes_fmm::{Output, Points, Singularities, Strengths, Stresslets};
 
 use super::SuspensionError;
 use super::sums::{Planned, Sums};
+use crate::body::discretization::Discretization;
 use crate::body::flow::{Flow, FlowError, first_not_finite};
 use crate::body::frame::Frame;
 use crate::body::layers::Layers;
 use crate::body::linear_flow::LinearFlow;
-use crate::body::discretization::Discretization;
 use crate::kernel::{FlowAt, FlowGradientAt};
 use crate::progress::{Progress, Silent};
 
@@ -168,7 +168,9 @@ impl Sources {
                 sources.positions.push(position.into());
                 sources.stokeslets.push(vector(scale * point.single));
                 // The sum's stresslet has the other sign.
-                sources.densities.push(vector(-scale * scale * point.double));
+                sources
+                    .densities
+                    .push(vector(-scale * scale * point.double));
                 sources.normals.push(vector(point.normal));
             })?;
         }

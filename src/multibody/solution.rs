@@ -110,9 +110,11 @@ impl Imposed {
             None => SurfaceModes::sample(discretization, 1, |x| motion.at(x)),
         };
         let single = match (body.motion, free) {
-            (Motion::Free(wrench), Some(shell)) => {
-                Some(shell.motion(frame.wrench_to_body(wrench)).on(discretization))
-            }
+            (Motion::Free(wrench), Some(shell)) => Some(
+                shell
+                    .motion(frame.wrench_to_body(wrench))
+                    .on(discretization),
+            ),
             _ => None,
         };
         Self {
@@ -182,14 +184,23 @@ pub(crate) fn solve(
         let mut velocity = imposed.velocity.clone();
         if let (Some(single), Some(solver)) = (&imposed.single, class.free()) {
             velocity = velocity.plus(-1.0, &solver.single_layer(single));
-            copy_modes(&mut forced[layout.of(i)], &single.scaled_by_roots(discretization));
+            copy_modes(
+                &mut forced[layout.of(i)],
+                &single.scaled_by_roots(discretization),
+            );
         }
-        copy_modes(&mut data[layout.of(i)], &velocity.scaled_by_roots(discretization));
+        copy_modes(
+            &mut data[layout.of(i)],
+            &velocity.scaled_by_roots(discretization),
+        );
     }
     if forced.iter().any(|&x| x != 0.0) {
         let mut velocities = vec![0.0; layout.len()];
-        single_layers(bodies, &classes, care.product)?
-            .add_velocities(&forced, &mut velocities, care.product)?;
+        single_layers(bodies, &classes, care.product)?.add_velocities(
+            &forced,
+            &mut velocities,
+            care.product,
+        )?;
         for (data, velocity) in data.iter_mut().zip(&velocities) {
             *data -= velocity;
         }
@@ -276,7 +287,8 @@ fn single_layers(
         let single = Tables::new(of.discretization.clone(), of.n_max, LayerWeights::SINGLE)?;
         Ok((class, Arc::new(single)))
     });
-    let tables: Vec<(&Arc<Class>, Arc<Tables>)> = tables.collect::<Result<_, InteractionError>>()?;
+    let tables: Vec<(&Arc<Class>, Arc<Tables>)> =
+        tables.collect::<Result<_, InteractionError>>()?;
     let members = (bodies.iter().enumerate()).filter_map(|(i, body)| {
         let mine = |(class, _): &&(&Arc<Class>, Arc<Tables>)| Arc::ptr_eq(class, classes.of(i));
         Some(Member {

@@ -279,7 +279,11 @@ impl<'a> Suspension<'a> {
             }
             let worst = latest.misses.iter().map(|miss| miss.largest);
             let worst = worst.fold(0.0, f64::max);
-            kinds = refined(&kinds, &latest.misses, worst * tolerance / latest.error_estimate);
+            kinds = refined(
+                &kinds,
+                &latest.misses,
+                worst * tolerance / latest.error_estimate,
+            );
             if needed_memory(&kinds, &self.options) > budget {
                 break;
             }
@@ -303,7 +307,6 @@ impl<'a> Suspension<'a> {
                 Placed {
                     curve: &*body.curve,
                     frame: body.frame,
-                    scale: 1.0,
                     reach: REACH * extent * body.frame.scale(),
                 }
             })
@@ -352,11 +355,20 @@ impl<'a> Suspension<'a> {
         before: Option<&Solution>,
         progress: &dyn Progress,
     ) -> Result<Round, SuspensionError> {
-        let rest = self.memory().saturating_sub(needed_memory(kinds, &self.options));
+        let rest = self
+            .memory()
+            .saturating_sub(needed_memory(kinds, &self.options));
         let care = self.care(tolerance, rest);
         let (solution, imposed) = solve(self, kinds, care, before, progress)?;
-        let Iteration { iterations, residual, stop, .. } = solution.iteration;
-        if stop != Stop::Converged && !(stop == Stop::Stagnated && residual <= STALLED * care.residual) {
+        let Iteration {
+            iterations,
+            residual,
+            stop,
+            ..
+        } = solution.iteration;
+        if stop != Stop::Converged
+            && !(stop == Stop::Stagnated && residual <= STALLED * care.residual)
+        {
             return Err(SuspensionError::NotConverged {
                 iterations,
                 residual,
@@ -409,8 +421,7 @@ impl<'a> Suspension<'a> {
         let mut scale = 0.0f64;
         for (i, body) in self.bodies.iter().enumerate() {
             if let Motion::Given(_) = body.motion {
-                let size =
-                    body.frame.scale() * solution.classes.of(i).tables.discretization.size();
+                let size = body.frame.scale() * solution.classes.of(i).tables.discretization.size();
                 let wrench = body.frame.wrench_to_lab(solution.wrenches[i]);
                 let found = wrench.force.norm().max(wrench.torque.norm() / size);
                 force = force.max(6.0 * PI * size * misses[i].largest);
@@ -469,7 +480,11 @@ impl<'a> Suspension<'a> {
         let targets = if self.targets.is_empty() {
             Vec::new()
         } else {
-            flow.evaluate(self.targets, evaluation_tolerance(Some(tolerance)), progress)?
+            flow.evaluate(
+                self.targets,
+                evaluation_tolerance(Some(tolerance)),
+                progress,
+            )?
         };
         let evaluate = start.elapsed().as_secs_f64();
         let seconds = solution.seconds;

@@ -3,11 +3,13 @@
     python3 sphere_chains.py > ../sphere_chains.csv
 
 Method A of multipoles.py. The script stops when N and 4/3 N differ by more than 1e-14 of the value, or the matrix of forces and
-torques against velocities and angular velocities is asymmetric by more than 1e-14 of its largest entry.
+torques against velocities and angular velocities is asymmetric by more than 1e-14 of its largest entry, or rings of Stokeslets
+inside (spheroidal.py, double precision) give forces or torques that differ by more than 5e-12 of the largest.
 """
 import sys
 import numpy as np
 from multipoles import Chain
+from spheroidal import Body, rings
 from two_spheres import agree, show, WORST
 
 OUT = []
@@ -32,6 +34,14 @@ for count in (3, 5):
             else:
                 full = np.vstack([np.hstack([u[0][:, 0::3], u[0][:, 1::3]]), np.hstack([u[1][:, 0::3], u[1][:, 1::3]])])
                 agree("symmetry", full, full.T, big)
+            # rings order the motions sphere by sphere: translation, rotation (m = 0: about the axis)
+            ring = rings([Body(1, 1, (0, 0, v)) for v in z], [0.5 if spacing == 2.5 else 0.65] * count, n - 5, m, 128)[0]
+            if m == 0:
+                agree("rings", ring[::2, ::2], u[0][:, 0::2], big, 5e-12)
+            else:
+                for row, mom in ((0, u[0]), (1, u[1])):
+                    for col in (0, 1):
+                        agree("rings", ring[row::2, col::2], mom[:, col::3], big, 5e-12)
             res.update(keep)
         for name, (m, f, g) in res.items():
             for i in range(count):

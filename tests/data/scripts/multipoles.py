@@ -47,7 +47,7 @@ def legendre(n_max, m, x, s):
 
 
 def solve(a, b):
-    """LU with partial pivoting in extended precision, one step of refinement."""
+    """LU with partial pivoting in extended precision."""
     lu, x = a.copy(), b.copy()
     k = len(lu)
     for i in range(k):

@@ -169,7 +169,7 @@ def legendre(eta, s, m, n_max):
         p.append(a * (eta * p[-1] - (b * p[-2] if n > m + 1 else 0)))
     d = []
     for n in range(m, n_max + 1):
-        # (1 - x^2) P' = -n x P_n + (2n+1)/sqrt(...) ...
+        # (1 - x^2) P' = (n + m) P_{n-1} - n x P_n, with the norms
         low = np.sqrt((n * n - m * m) * (2 * n + 1) / (2 * n - 1)) * p[n - m - 1] if n > m else 0
         d.append((low - n * eta * p[n - m]) / np.maximum(s * s, 1e-300))
     return p, d
@@ -270,7 +270,8 @@ def stokeslets(bodies, inner, count, over=1.7):
     out = []
     for b, s, f in zip(bodies, sources, np.split(x.reshape(3, len(y), -1), len(bodies), 1)):
         q = s - b.x
-        out += [f.sum(1), np.stack([q[:, 1] @ f[2] - q[:, 2] @ f[1], q[:, 2] @ f[0] - q[:, 0] @ f[2], q[:, 0] @ f[1] - q[:, 1] @ f[0]])]
+        torque = [q[:, 1] @ f[2] - q[:, 2] @ f[1], q[:, 2] @ f[0] - q[:, 0] @ f[2], q[:, 0] @ f[1] - q[:, 1] @ f[0]]
+        out += [f.sum(1), np.stack(torque)]
     return np.vstack(out), worst
 
 
@@ -302,7 +303,8 @@ def rings(bodies, inner, n, m, n_phi=200):
             cm, sm = (1 + 0 * t, 1 + 0 * t) if m == 0 else (ct, st)
 
             def cyl(a):
-                return np.stack([(a[:, 0] * ct + a[:, 1] * st) @ cm, (a[:, 1] * ct - a[:, 0] * st) @ sm, a[:, 2] @ cm], 1).reshape(len(h), -1) / n_phi
+                parts = [(a[:, 0] * ct + a[:, 1] * st) @ cm, (a[:, 1] * ct - a[:, 0] * st) @ sm, a[:, 2] @ cm]
+                return np.stack(parts, 1).reshape(len(h), -1) / n_phi
 
             u = [cyl(g[0][0]), cyl(g[1][1] if m == 0 else -g[1][0]), cyl(g[0][2])]
             w = np.zeros((3, len(h), 2 * len(bodies)))

@@ -122,8 +122,8 @@ if __name__ == "__main__":
 a1,a2,distance,motion,moving,force1,torque1,stresslet1,force2,torque2,stresslet2""")
     else:
         print(f"""# Two spheres: normalised resistance functions. Origin: {script}.
-# d = e_z from sphere 1 (radius a1) to sphere 2 (radius a2), s_ij = (a_i + a_j)/2, distance between centres. Definitions (i: the
-# sphere acted from, j: the moving one), viscosity 1, force, torque, stresslet on the fluid:
+# d = e_z from sphere 1 (radius a1) to sphere 2 (radius a2), s = (a_i + a_j)/2. Definitions (i: the
+# sphere whose force on the fluid is taken, j: the moving one, the other held), viscosity 1:
 # F_i = 6 pi s xa_ij U_z e_z, 6 pi s ya_ij U_x e_x; T_i = 4 pi s^2 yb_ij (U x d) for U across [T_y = -4 pi s^2 yb_ij U_x];
 # T_i = 8 pi s^3 xc_ij Omega_z e_z, 8 pi s^3 yc_ij Omega_y e_y; S_i = 4 pi s^2 xg_ij U_z (dd - I/3), S_xz = 4 pi s^2 yg_ij U_x,
 # S_xz = 8 pi s^3 yh_ij Omega_y. These are the normalisations of Jeffrey & Onishi 1984 (A, B, C) and Jeffrey 1992 (G, H).

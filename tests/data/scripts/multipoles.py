@@ -3,7 +3,9 @@
 Method A, `Chain`: about each sphere Lamb's three decaying solutions (Lamb 1932, art. 336; Happel & Brenner 1973, section 3-2),
 degrees 1..N, azimuthal order m = 0 or 1; no slip by projecting the field of the other spheres on vector spherical harmonics with
 Gauss-Legendre points, LU. Method B, `twin`: two spheres, the reflections of Jeffrey & Onishi 1984 (J. Fluid Mech. 139, 261),
-their recurrences for P, V, Q summed as a linear system instead of in powers. Method C, `stimson_jeffery`: equal spheres.
+their recurrences for P, V, Q summed as a linear system instead of in powers (written down from memory, not
+from the paper; one factor 1/n in P of the asymmetric motions was restored from the far field of method A). Method C,
+`stimson_jeffery`: equal spheres.
 Forces, torques and stresslets are those exerted on the fluid, about each sphere's own centre.
 """
 import numpy as np

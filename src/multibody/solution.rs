@@ -130,12 +130,11 @@ pub(crate) fn solve(
     suspension: &Suspension<'_>,
     kinds: &[Kind],
     care: Care,
+    known: &Classes,
     before: Option<&Solution>,
     progress: &dyn Progress,
 ) -> Result<(Solution, f64), SuspensionError> {
     let start = Instant::now();
-    let none = Classes::default();
-    let known = before.map_or(&none, |before| &before.classes);
     let classes = Classes::new(kinds, known, progress)?;
     let mut seconds = Seconds {
         factor: start.elapsed().as_secs_f64(),

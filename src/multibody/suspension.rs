@@ -38,7 +38,7 @@ use nalgebra::{Matrix3, Point3};
 
 use super::SuspensionError;
 use super::check::{Miss, misses};
-use super::class::{Kind, Role};
+use super::class::{Classes, Kind, Role};
 use super::contact::{Gap, Placed, gaps};
 use super::flow::{BodyLayers, SuspensionFlow};
 use super::resolution::{first, refined};
@@ -231,17 +231,11 @@ impl<'a> Suspension<'a> {
         let begin = Instant::now();
         self.gaps(progress)?;
         let kinds = self.kinds(resolutions)?;
-        let budget = self.memory();
-        let needed = needed_memory(&kinds, &self.options);
-        if needed > budget {
-            return Err(SuspensionError::Memory {
-                what: "panels, order and modes by hand",
-                needed: gibibytes(needed),
-                budget: gibibytes(budget),
-            });
-        }
-        let round = self.round(&kinds, tolerance, None, progress)?;
-        self.answer(round, tolerance, 0, begin, progress)
+        self.check_memory(&kinds, "panels, order and modes by hand")?;
+        let known = Classes::default();
+        let round = self.round(&kinds, tolerance, &known, None, progress)?;
+        let products = round.solution.iteration.products;
+        self.answer(round, tolerance, products, begin, progress)
     }
 
     /// The answer to a tolerance: the first resolutions found whose error estimate is below it, or the best there are; compare
@@ -255,21 +249,41 @@ impl<'a> Suspension<'a> {
         progress: &dyn Progress,
     ) -> Result<Answer, SuspensionError> {
         let begin = Instant::now();
+        let start = self.start(tolerance, progress)?;
+        let Converged { best, products, .. } = self.converge(start, tolerance, progress)?;
+        self.answer(best, tolerance, products, begin, progress)
+    }
+
+    /// The first resolutions for a tolerance.
+    pub(crate) fn start(
+        &self,
+        tolerance: f64,
+        progress: &dyn Progress,
+    ) -> Result<Start, SuspensionError> {
         if self.bodies.is_empty() {
             return Err(SuspensionError::Empty);
         }
         let gaps = self.gaps(progress)?;
-        let budget = self.memory();
-        let mut kinds = self.kinds(&first(self, &gaps, tolerance)?)?;
-        let needed = needed_memory(&kinds, &self.options);
-        if needed > budget {
-            return Err(SuspensionError::Memory {
-                what: "the resolutions that this tolerance would start with",
-                needed: gibibytes(needed),
-                budget: gibibytes(budget),
-            });
-        }
-        let mut latest = self.round(&kinds, tolerance, None, progress)?;
+        let kinds = self.kinds(&first(self, &gaps, tolerance)?)?;
+        self.check_memory(
+            &kinds,
+            "the resolutions that this tolerance would start with",
+        )?;
+        Ok(Start {
+            kinds,
+            known: Classes::default(),
+        })
+    }
+
+    /// Finer and finer solutions until the estimated error is below the tolerance or no longer falls.
+    pub(crate) fn converge(
+        &self,
+        start: Start,
+        tolerance: f64,
+        progress: &dyn Progress,
+    ) -> Result<Converged, SuspensionError> {
+        let Start { mut kinds, known } = start;
+        let mut latest = self.round(&kinds, tolerance, &known, None, progress)?;
         let mut products = 0;
         let mut best = latest.clone();
         let mut without_gain = 0;
@@ -278,24 +292,40 @@ impl<'a> Suspension<'a> {
                 break;
             }
             let worst = latest.misses.iter().map(|miss| miss.largest);
-            let worst = worst.fold(0.0, f64::max);
-            kinds = refined(
-                &kinds,
-                &latest.misses,
-                worst * tolerance / latest.error_estimate,
-            );
-            if needed_memory(&kinds, &self.options) > budget {
+            let allowed = worst.fold(0.0, f64::max) * tolerance / latest.error_estimate;
+            let finer = refined(&kinds, &latest.misses, allowed);
+            if needed_memory(&finer, &self.options) > self.memory() {
                 break;
             }
+            kinds = finer;
             products += latest.solution.iteration.products;
-            latest = self.round(&kinds, tolerance, Some(&latest.solution), progress)?;
-            let gain = latest.error_estimate < 0.5 * best.error_estimate;
+            let known = &latest.solution.classes;
+            let next = self.round(&kinds, tolerance, known, Some(&latest.solution), progress)?;
+            let gain = next.error_estimate < 0.5 * best.error_estimate;
             without_gain = if gain { 0 } else { without_gain + 1 };
-            if latest.error_estimate < best.error_estimate {
-                best = latest.clone();
+            if next.error_estimate < best.error_estimate {
+                best = next.clone();
             }
+            latest = next;
         }
-        self.answer(best, tolerance, products, begin, progress)
+        products += latest.solution.iteration.products;
+        Ok(Converged {
+            best,
+            kinds,
+            products,
+        })
+    }
+
+    fn check_memory(&self, kinds: &[Kind], what: &'static str) -> Result<(), SuspensionError> {
+        let (needed, budget) = (needed_memory(kinds, &self.options), self.memory());
+        if needed <= budget {
+            return Ok(());
+        }
+        Err(SuspensionError::Memory {
+            what,
+            needed: gibibytes(needed),
+            budget: gibibytes(budget),
+        })
     }
 
     /// How far the bodies are apart; those that are near.
@@ -352,6 +382,7 @@ impl<'a> Suspension<'a> {
         &self,
         kinds: &[Kind],
         tolerance: f64,
+        known: &Classes,
         before: Option<&Solution>,
         progress: &dyn Progress,
     ) -> Result<Round, SuspensionError> {
@@ -359,7 +390,7 @@ impl<'a> Suspension<'a> {
             .memory()
             .saturating_sub(needed_memory(kinds, &self.options));
         let care = self.care(tolerance, rest);
-        let (solution, imposed) = solve(self, kinds, care, before, progress)?;
+        let (solution, imposed) = solve(self, kinds, care, known, before, progress)?;
         let Iteration {
             iterations,
             residual,
@@ -495,7 +526,7 @@ impl<'a> Suspension<'a> {
             flow,
             error_estimate,
             largest_speed: speed,
-            products: products + solution.iteration.products,
+            products,
             unknowns: solution.unknowns,
             points: solution.points,
             near: (solution.near_points, solution.near_bytes),
@@ -561,12 +592,36 @@ fn extent(curve: &dyn GeneratingCurve) -> f64 {
     far.fold(0.0, f64::max)
 }
 
+/// Where to begin.
+pub(crate) struct Start {
+    kinds: Vec<Kind>,
+    /// What is factored already.
+    known: Classes,
+}
+
+/// Where it ended.
+pub(crate) struct Converged {
+    pub best: Round,
+    kinds: Vec<Kind>,
+    products: usize,
+}
+
+impl Converged {
+    /// To go on with the next question about the same bodies.
+    pub fn into_start(self) -> Start {
+        Start {
+            kinds: self.kinds,
+            known: self.best.solution.classes,
+        }
+    }
+}
+
 /// A solution with what is known of its error.
 #[derive(Clone, Debug)]
-struct Round {
-    solution: Solution,
+pub(crate) struct Round {
+    pub solution: Solution,
     misses: Vec<Miss>,
-    error_estimate: f64,
+    pub error_estimate: f64,
     speed: f64,
     estimate: f64,
 }

@@ -197,13 +197,9 @@ impl Sources {
             ..Strengths::default()
         };
         let points = Points::apart(&self.positions, &targets);
-        let mut sums = Sums::new(Singularities::Both, output);
-        let flow = sums.apply(
-            &mut Planned::default(),
-            points,
-            &strengths,
-            MARGIN * tolerance,
-        )?;
+        let tolerance = MARGIN * tolerance;
+        let mut sums = Sums::new(Singularities::Both, output, tolerance);
+        let flow = sums.apply(&mut Planned::default(), points, &strengths, tolerance)?;
         let at = |index: usize| FlowGradientAt {
             velocity: flow.velocity[index].into(),
             pressure: flow.pressure[index],

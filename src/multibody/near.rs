@@ -45,8 +45,6 @@ pub(crate) struct Near {
     visits: Vec<Vec<Visit>>,
     /// Bytes of the rows that are kept.
     pub stored: usize,
-    /// Bytes that the others would take.
-    pub recomputed: usize,
 }
 
 /// A thread's buffers.
@@ -75,14 +73,12 @@ impl Near {
             .into_par_iter()
             .map(|body| visits(members, &surroundings, body))
             .collect();
-        let (mut stored, mut recomputed) = (0, 0);
+        let mut stored = 0;
         for visit in visits.iter_mut().flatten() {
             let bytes = 8 * visit.len(members);
             if stored + bytes <= memory {
                 stored += bytes;
                 visit.rows = Some(Vec::new());
-            } else {
-                recomputed += bytes;
             }
         }
         let rows = |room: &mut Room, visits: &mut Vec<Visit>| {
@@ -95,11 +91,7 @@ impl Near {
         visits
             .par_iter_mut()
             .try_for_each_init(Room::default, rows)?;
-        Ok(Self {
-            visits,
-            stored,
-            recomputed,
-        })
+        Ok(Self { visits, stored })
     }
 
     /// Adds, to the velocities of a body's points in the laboratory (`velocity(point)`), what is exact less what the points of the panels do:

@@ -70,11 +70,14 @@ pub(crate) struct Solution {
 /// Wall-clock seconds.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Seconds {
-    /// Assembling and factoring single bodies.
+    /// Assembling single bodies, and factoring them.
+    pub assemble: f64,
     pub factor: f64,
     /// Finding what is near, and its rows.
     pub near: f64,
     pub iterate: f64,
+    /// Of that, the sums over points.
+    pub sum: f64,
 }
 
 /// What is imposed on a body, in its frame.
@@ -136,8 +139,11 @@ pub(crate) fn solve(
 ) -> Result<(Solution, f64), SuspensionError> {
     let start = Instant::now();
     let classes = Classes::new(kinds, known, progress)?;
+    let spent = start.elapsed().as_secs_f64();
+    let factoring = spent * classes.share_of_factoring();
     let mut seconds = Seconds {
-        factor: start.elapsed().as_secs_f64(),
+        assemble: spent - factoring,
+        factor: factoring,
         ..Seconds::default()
     };
     let start = Instant::now();
@@ -221,6 +227,7 @@ pub(crate) fn solve(
     )?;
     let densities = system.solve_alone_of(&unknown);
     seconds.iterate = start.elapsed().as_secs_f64();
+    seconds.sum = system.interactions.seconds_of_sums;
     let mut solution = Solution {
         unknown: Vec::new(),
         layers: Vec::new(),

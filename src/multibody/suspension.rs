@@ -173,12 +173,16 @@ pub struct Answer {
 /// Wall-clock seconds, of the last solution but for `refine`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Timings {
-    /// Assembling and factoring the matrices of single bodies.
+    /// Assembling the matrices of single bodies, and all else that belongs to shapes.
+    pub assemble: f64,
+    /// Factoring them.
     pub factor: f64,
     /// Finding points near other bodies, and what is needed for them.
     pub near: f64,
     /// Iterating.
     pub iterate: f64,
+    /// Of that, summing over points.
+    pub sum: f64,
     /// Evaluating the flow at the targets.
     pub evaluate: f64,
     /// Estimating the error.
@@ -189,7 +193,7 @@ pub struct Timings {
 
 /// Residuals and products are better than the tolerance by these factors.
 const RESIDUAL: f64 = 0.1;
-const PRODUCT: f64 = 0.03;
+const PRODUCT: f64 = 0.04;
 /// How far the estimate stays above what the boundary velocity is off by.
 const SAFETY: f64 = 2.0;
 /// What is left to rounding.
@@ -372,7 +376,7 @@ impl<'a> Suspension<'a> {
         let residual = self.options.residual.unwrap_or(RESIDUAL * tolerance);
         Care {
             residual: residual.max(LEAST),
-            product: (PRODUCT * tolerance).min(0.3 * residual).max(LEAST),
+            product: (PRODUCT * tolerance).min(0.4 * residual).max(LEAST),
             memory,
         }
     }
@@ -519,7 +523,12 @@ impl<'a> Suspension<'a> {
         };
         let evaluate = start.elapsed().as_secs_f64();
         let seconds = solution.seconds;
-        let own = seconds.factor + seconds.near + seconds.iterate + evaluate + estimate;
+        let own = seconds.assemble
+            + seconds.factor
+            + seconds.near
+            + seconds.iterate
+            + evaluate
+            + estimate;
         Ok(Answer {
             bodies: bodies.collect(),
             targets,
@@ -533,9 +542,11 @@ impl<'a> Suspension<'a> {
             classes: solution.classes.len(),
             iteration: solution.iteration,
             timings: Timings {
+                assemble: seconds.assemble,
                 factor: seconds.factor,
                 near: seconds.near,
                 iterate: seconds.iterate,
+                sum: seconds.sum,
                 evaluate,
                 estimate,
                 refine: begin.elapsed().as_secs_f64() - own,

@@ -1,6 +1,7 @@
 //! Suspensions: the table 3.1 of the thesis, and figures of the multibody solver.
 //!
 //!     cargo bench --bench suspension -- table [most bodies]      the thesis's table, its figures beside ours
+//!     cargo bench --bench suspension -- chosen BODIES TOLERANCE  its test with points chosen for a tolerance
 //!     cargo bench --bench suspension -- iterations [bodies on a side ...]
 //!     cargo bench --bench suspension -- solve BODIES TOLERANCE   one suspension of free bodies, time and memory
 //!
@@ -60,6 +61,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 .collect();
             iterations(if sides.is_empty() { &[2, 4] } else { &sides })
         }
+        Some("chosen") => chosen(number(1, 64.0) as usize, number(2, 1e-9)),
         Some("solve") => solve(number(1, 125.0) as usize, number(2, 1e-6)),
         _ => {
             println!("nothing asked for: table, iterations or solve");
@@ -130,7 +132,7 @@ fn table(most: usize) -> Result<(), Box<dyn Error>> {
                 None => " ".repeat(52),
             };
             let (answer, error) = pool
-                .install(|| known_flow(bodies))
+                .install(|| known_flow(bodies, None))
                 .map_err(|e| e.to_string())?;
             let t = answer.timings;
             println!(
@@ -148,8 +150,17 @@ fn table(most: usize) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The absolute error of the velocity at points outside.
-fn known_flow(count: usize) -> Result<(Answer, f64), String> {
+fn chosen(count: usize, tolerance: f64) -> Result<(), Box<dyn Error>> {
+    let (answer, error) = known_flow(count, Some(tolerance))?;
+    println!(
+        "{count} bodies to {tolerance:.0e}: {} points, absolute error {error:.1e}, estimated {:.1e} of the largest speed {:.3}; {:?}",
+        answer.points, answer.error_estimate, answer.largest_speed, answer.timings
+    );
+    Ok(())
+}
+
+/// The absolute error of the velocity at points outside; the thesis's points, or those that the solver chooses for a tolerance.
+fn known_flow(count: usize, tolerance: Option<f64>) -> Result<(Answer, f64), String> {
     let mut chance = fastrand::Rng::with_seed(31);
     let frames = frames(count, &mut chance);
     let stokeslets: Vec<Stokeslet> = frames
@@ -201,9 +212,11 @@ fn known_flow(count: usize) -> Result<(Answer, f64), String> {
         targets: &targets,
         ..Suspension::new(bodies)
     };
-    let answer = suspension
-        .at_resolutions(&resolutions, 1e-8, &Silent)
-        .map_err(|error| error.to_string())?;
+    let answer = match tolerance {
+        None => suspension.at_resolutions(&resolutions, 1e-8, &Silent),
+        Some(tolerance) => suspension.to_tolerance(tolerance, &Silent),
+    };
+    let answer = answer.map_err(|error| error.to_string())?;
     let errors = targets.iter().zip(&answer.targets);
     let error = errors
         .map(|(x, at)| (at.velocity - exact(x.coords)).amax())

@@ -204,7 +204,9 @@ const SMALL: f64 = 1e-2;
 const ROUNDS: usize = 10;
 const PATIENCE: usize = 1;
 /// Gaps of so many sizes of a body matter to its resolution.
-const REACH: f64 = 2.0;
+const REACH: f64 = 1.0;
+/// The largest tolerance to choose resolutions for.
+const COARSEST: f64 = 1e-2;
 /// An iteration that stagnates at so many times its residual has found what there is.
 const STALLED: f64 = 100.0;
 /// Least relative residual and product.
@@ -233,7 +235,7 @@ impl<'a> Suspension<'a> {
         progress: &dyn Progress,
     ) -> Result<Answer, SuspensionError> {
         let begin = Instant::now();
-        self.gaps(progress)?;
+        self.gaps(0.0, progress)?;
         let kinds = self.kinds(resolutions)?;
         self.check_memory(&kinds, "panels, order and modes by hand")?;
         let known = Classes::default();
@@ -267,16 +269,22 @@ impl<'a> Suspension<'a> {
         if self.bodies.is_empty() {
             return Err(SuspensionError::Empty);
         }
-        let gaps = self.gaps(progress)?;
-        let kinds = self.kinds(&first(self, &gaps, tolerance)?)?;
-        self.check_memory(
-            &kinds,
-            "the resolutions that this tolerance would start with",
-        )?;
-        Ok(Start {
-            kinds,
-            known: Classes::default(),
-        })
+        let gaps = self.gaps(REACH, progress)?;
+        // Where memory does not do for the tolerance, the best that it does for: the estimate will tell.
+        let mut looser = tolerance;
+        loop {
+            let kinds = self.kinds(&first(self, &gaps, looser)?)?;
+            match self.check_memory(&kinds, "the coarsest resolutions that make sense") {
+                Ok(()) => {
+                    return Ok(Start {
+                        kinds,
+                        known: Classes::default(),
+                    });
+                }
+                Err(error) if looser > COARSEST => return Err(error),
+                Err(_) => looser *= 10.0,
+            }
+        }
     }
 
     /// Finer and finer solutions until the estimated error is below the tolerance or no longer falls.
@@ -332,8 +340,8 @@ impl<'a> Suspension<'a> {
         })
     }
 
-    /// How far the bodies are apart; those that are near.
-    fn gaps(&self, progress: &dyn Progress) -> Result<Vec<Gap>, SuspensionError> {
+    /// How far the bodies are apart whose gap is below `reach` sizes; an error if any are not.
+    fn gaps(&self, reach: f64, progress: &dyn Progress) -> Result<Vec<Gap>, SuspensionError> {
         progress.begin("gaps", 0);
         let placed: Vec<Placed<'_>> = (self.bodies.iter())
             .map(|body| {
@@ -341,7 +349,7 @@ impl<'a> Suspension<'a> {
                 Placed {
                     curve: &*body.curve,
                     frame: body.frame,
-                    reach: REACH * extent * body.frame.scale(),
+                    reach: reach * extent * body.frame.scale(),
                 }
             })
             .collect();

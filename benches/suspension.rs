@@ -3,6 +3,7 @@
 //!     cargo bench --bench suspension -- table [most bodies]      the thesis's table, its figures beside ours
 //!     cargo bench --bench suspension -- chosen BODIES TOLERANCE  its test with points chosen for a tolerance
 //!     cargo bench --bench suspension -- iterations [bodies on a side ...]
+//!     cargo bench --bench suspension -- product [BODIES] [TOLERANCE]   products at one tolerance beside their sums over points
 //!     cargo bench --bench suspension -- solve BODIES TOLERANCE   one suspension of free bodies, time and memory
 //!
 //! Spheroids on a cubic grid of spacing 2.4, axes at random; the thesis's have 5 panels of 10 nodes and 25 modes, 2550 points each.
@@ -62,6 +63,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             iterations(if sides.is_empty() { &[2, 4] } else { &sides })
         }
         Some("chosen") => chosen(number(1, 64.0) as usize, number(2, 1e-9)),
+        Some("product") => product(number(1, 64.0) as usize, number(2, 1e-6)),
         Some("solve") => solve(number(1, 125.0) as usize, number(2, 1e-6)),
         _ => {
             println!("nothing asked for: table, iterations or solve");
@@ -278,6 +280,28 @@ fn iterations(sides: &[usize]) -> Result<(), Box<dyn Error>> {
         println!(
             "{count:6}  {:8}  {:22}  {:9}",
             counts[0], counts[1], counts[2]
+        );
+    }
+    Ok(())
+}
+
+/// An iteration whose products are all made to one tolerance: all that it takes over its sums alone, plans included in both.
+fn product(count: usize, tolerance: f64) -> Result<(), Box<dyn Error>> {
+    for free in [true, false] {
+        let (bodies, resolutions) = rods_and_discs(count, free)?;
+        let mut suspension = Suspension::new(bodies);
+        suspension.options.loosest_product = 0.0;
+        suspension.options.residual = Some(25.0 * tolerance);
+        let answer = suspension.at_resolutions(&resolutions, 25.0 * tolerance, &Silent)?;
+        let (t, products) = (answer.timings, answer.iteration.products as f64);
+        println!(
+            "{count} {} bodies, {} points, {products} products to {tolerance:.0e}: {:.3} s each, {:.3} times the sum's {:.3} s; {:.0} unknowns per second and iteration",
+            if free { "free" } else { "held" },
+            answer.points,
+            t.iterate / products,
+            t.iterate / t.sum,
+            t.sum / products,
+            answer.unknowns as f64 * products / t.iterate,
         );
     }
     Ok(())

@@ -14,6 +14,7 @@ use super::class::Class;
 use super::interactions::Interactions;
 use super::resolution::are_coaxial;
 use super::solution::{Imposed, Solution};
+use super::sums::Operators;
 use super::suspension::{Motion, Suspension};
 use super::tables::{Member, Tables};
 use crate::body::discretization::Discretization;
@@ -48,6 +49,7 @@ pub(crate) fn misses(
     suspension: &Suspension<'_>,
     solution: &Solution,
     tolerance: f64,
+    operators: &Operators,
     progress: &dyn Progress,
 ) -> Result<Vec<Miss>, SuspensionError> {
     let classes = &solution.classes;
@@ -106,7 +108,9 @@ pub(crate) fn misses(
             return Err(SuspensionError::Interrupted);
         }
     }
-    let others = from_others(suspension, &finer, &finer_of, &layers, tolerance, progress)?;
+    let others = from_others(
+        suspension, &finer, &finer_of, &layers, tolerance, operators, progress,
+    )?;
     let misses = own.into_iter().flatten().zip(others).enumerate();
     Ok(misses
         .map(|(i, (own, others))| {
@@ -174,6 +178,7 @@ fn from_others(
     finer_of: &[usize],
     layers: &[Layers],
     tolerance: f64,
+    operators: &Operators,
     progress: &dyn Progress,
 ) -> Result<Vec<SurfaceModes>, SuspensionError> {
     let discretization = |body: usize| &finer[finer_of[body]].discretization;
@@ -216,7 +221,8 @@ fn from_others(
                 frame: body.frame,
             });
         // The rows are needed once.
-        let mut interactions = Interactions::new(members.collect(), tolerance, 0, &|_| ())?;
+        let mut interactions =
+            Interactions::new(members.collect(), tolerance, 0, operators.clone(), &|_| ())?;
         let mut velocities = vec![0.0; fields.len()];
         interactions.add_velocities(&fields, &mut velocities, tolerance)?;
         let layout = interactions.layout();

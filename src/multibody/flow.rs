@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use stokes_fmm::{Output, Points, Singularities, Strengths, Stresslets};
 
 use super::SuspensionError;
-use super::sums::{Planned, Sums};
+use super::sums::{Operators, Sums};
 use crate::body::discretization::Discretization;
 use crate::body::flow::{Flow, FlowError, first_not_finite};
 use crate::body::frame::Frame;
@@ -198,8 +198,8 @@ impl Sources {
         };
         let points = Points::apart(&self.positions, &targets);
         let tolerance = MARGIN * tolerance;
-        let mut sums = Sums::new(Singularities::Both, output, tolerance);
-        let flow = sums.apply(&mut Planned::default(), points, &strengths, tolerance)?;
+        let mut sums = Sums::new(Operators::default(), Singularities::Both, output, tolerance);
+        let flow = sums.apply(points, &strengths, tolerance)?;
         let at = |index: usize| FlowGradientAt {
             velocity: flow.velocity[index].into(),
             pressure: flow.pressure[index],

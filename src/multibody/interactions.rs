@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use stokes_fmm::{FmmError, Output, Points, Singularities, Strengths, Stresslets};
 
 use super::near::Near;
-use super::sums::{Planned, Sums};
+use super::sums::{Operators, Sums};
 use super::tables::{Batches, Layout, Member, multiply};
 use crate::body::surface_grid::PointVectors;
 
@@ -40,7 +40,6 @@ pub(crate) struct Interactions {
     normals: Vec<[f64; 3]>,
     near: Near,
     sums: Sums,
-    planned: Planned,
     /// Wall-clock seconds of all sums so far.
     pub seconds_of_sums: f64,
     own: Vec<f64>,
@@ -58,6 +57,7 @@ impl Interactions {
         members: Vec<Member>,
         tolerance: f64,
         memory: usize,
+        operators: Operators,
         done: &(dyn Fn(usize) + Sync),
     ) -> Result<Self, InteractionError> {
         let fields = Layout::new(members.iter().map(|m| m.tables.grid.field_len()));
@@ -92,8 +92,7 @@ impl Interactions {
             strengths: members.iter().map(|m| m.tables.grid.vectors()).collect(),
             stokeslets: room(single),
             stresslets: room(double),
-            sums: Sums::new(singularities, Output::Velocity, tolerance),
-            planned: Planned::default(),
+            sums: Sums::new(operators, singularities, Output::Velocity, tolerance),
             seconds_of_sums: 0.0,
             members,
             fields,
@@ -145,10 +144,7 @@ impl Interactions {
         };
         let start = Instant::now();
         let points = Points::same(&self.positions);
-        let mut velocity = self
-            .sums
-            .apply(&mut self.planned, points, &strengths, tolerance)?
-            .velocity;
+        let mut velocity = self.sums.apply(points, &strengths, tolerance)?.velocity;
         self.seconds_of_sums += start.elapsed().as_secs_f64();
         self.own.copy_from_slice(densities);
         let members = &self.members;

@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 use super::SuspensionError;
 use super::class::{Class, Classes, Kind};
 use super::interactions::{InteractionError, Interactions};
+use super::sums::Operators;
 use super::suspension::{Body, Motion, Options, Suspension};
 use super::system::System;
 use super::tables::{Member, Tables};
@@ -135,6 +136,7 @@ pub(crate) fn solve(
     care: Care,
     known: &Classes,
     before: Option<&Solution>,
+    operators: &Operators,
     progress: &dyn Progress,
 ) -> Result<(Solution, f64), SuspensionError> {
     let start = Instant::now();
@@ -157,7 +159,8 @@ pub(crate) fn solve(
         .collect();
     progress.begin("near points", bodies.len());
     let done = |steps: usize| progress.advance(steps);
-    let interactions = Interactions::new(members, care.product, care.memory, &done)?;
+    let interactions =
+        Interactions::new(members, care.product, care.memory, operators.clone(), &done)?;
     let (points, near_points, near_bytes) = (
         interactions.points(),
         interactions.near().points(),
@@ -201,7 +204,7 @@ pub(crate) fn solve(
     }
     if forced.iter().any(|&x| x != 0.0) {
         let mut velocities = vec![0.0; layout.len()];
-        single_layers(bodies, &classes, care.product)?.add_velocities(
+        single_layers(bodies, &classes, care.product, operators)?.add_velocities(
             &forced,
             &mut velocities,
             care.product,
@@ -287,6 +290,7 @@ fn single_layers(
     bodies: &[Body<'_>],
     classes: &Classes,
     tolerance: f64,
+    operators: &Operators,
 ) -> Result<Interactions, InteractionError> {
     let tables = classes.iter().map(|class| {
         let of = &class.tables;
@@ -302,7 +306,7 @@ fn single_layers(
             frame: body.frame,
         })
     });
-    Interactions::new(members.collect(), tolerance, 0, &|_| ())
+    Interactions::new(members.collect(), tolerance, 0, operators.clone(), &|_| ())
 }
 
 /// The unknowns of an earlier solution at these resolutions.

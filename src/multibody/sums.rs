@@ -1,5 +1,7 @@
 //! Sums over points, fast where that pays, to the tolerance at hand.
 
+use std::sync::{Arc, Mutex, PoisonError};
+
 use stokes_fmm::{Flow, FmmError, Output, Points, Singularities, StokesSum, Strengths, direct};
 
 /// The least tolerance of a fast sum, and the largest that is worth having: beyond it sums become no cheaper.
@@ -9,33 +11,81 @@ const STEP: f64 = 100.0;
 /// Pairs up to which nothing is planned.
 const FEW: f64 = 1e8;
 
-/// Sums of one kind at various tolerances. What does not depend on the points is kept for each tolerance that was used.
+/// What fast sums need that does not depend on the points: made once for each kind and tolerance.
+#[derive(Clone, Default)]
+pub(crate) struct Operators(Arc<Mutex<Vec<Made>>>);
+
+struct Made {
+    singularities: Singularities,
+    output: Output,
+    /// Over one point: what is wanted of it are the operators.
+    sum: StokesSum,
+}
+
+impl Operators {
+    fn plan(
+        &self,
+        singularities: Singularities,
+        output: Output,
+        tolerance: f64,
+        points: Points<'_>,
+    ) -> Result<StokesSum, FmmError> {
+        let mut made = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let serves = |made: &Made| {
+            (made.singularities, made.output) == (singularities, output)
+                && is_near(made.sum.tolerance(), tolerance)
+        };
+        let place = match made.iter().position(serves) {
+            Some(place) => place,
+            None => {
+                let nowhere = Points::same(&[[0.0; 3]]);
+                let sum = StokesSum::new(nowhere, singularities, output, tolerance)?;
+                made.push(Made {
+                    singularities,
+                    output,
+                    sum,
+                });
+                made.len() - 1
+            }
+        };
+        made[place].sum.moved(points)
+    }
+}
+
+fn is_near(a: f64, b: f64) -> bool {
+    (a / b - 1.0).abs() < 0.1
+}
+
+/// Sums over the same points, again and again.
 pub(crate) struct Sums {
+    operators: Operators,
     singularities: Singularities,
     output: Output,
     best: f64,
-    known: Vec<StokesSum>,
+    /// The sum that was used last.
+    planned: Option<StokesSum>,
 }
-
-/// The sum over some points that was used last.
-#[derive(Default)]
-pub(crate) struct Planned(Option<StokesSum>);
 
 impl Sums {
     /// Sums to the tolerance `best` and looser ones.
-    pub fn new(singularities: Singularities, output: Output, best: f64) -> Self {
+    pub fn new(
+        operators: Operators,
+        singularities: Singularities,
+        output: Output,
+        best: f64,
+    ) -> Self {
         Self {
+            operators,
             singularities,
             output,
             best,
-            known: Vec::new(),
+            planned: None,
         }
     }
 
-    /// The flow of `strengths` at the targets to a tolerance, or somewhat better.
+    /// The flow of `strengths` at the targets to a tolerance, or somewhat better. The points must be the same each time.
     pub fn apply(
         &mut self,
-        planned: &mut Planned,
         points: Points<'_>,
         strengths: &Strengths<'_>,
         tolerance: f64,
@@ -48,21 +98,15 @@ impl Sums {
             let tolerance = Some(tolerance);
             return direct::sum(points.sources, strengths, targets, self.output, tolerance);
         }
-        let serves = |sum: &StokesSum| (sum.tolerance() / tolerance - 1.0).abs() < 0.1;
-        if let Some(sum) = planned.0.as_ref().filter(|sum| serves(sum)) {
+        let serves = |sum: &&StokesSum| is_near(sum.tolerance(), tolerance);
+        if let Some(sum) = self.planned.as_ref().filter(serves) {
             return sum.apply(strengths);
         }
         // Let go of the one before first: two would take twice the memory.
-        planned.0 = None;
-        if !self.known.iter().any(serves) {
-            // Of one point: what is wanted of it are the operators.
-            let nowhere = Points::same(&[[0.0; 3]]);
-            let sum = StokesSum::new(nowhere, self.singularities, self.output, tolerance)?;
-            self.known.push(sum);
-        }
-        let Some(operators) = self.known.iter().find(|sum| serves(sum)) else {
-            return Ok(Flow::default());
-        };
-        planned.0.insert(operators.moved(points)?).apply(strengths)
+        self.planned = None;
+        let sum = self
+            .operators
+            .plan(self.singularities, self.output, tolerance, points)?;
+        self.planned.insert(sum).apply(strengths)
     }
 }

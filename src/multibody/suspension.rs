@@ -43,6 +43,7 @@ use super::contact::{Gap, Placed, gaps};
 use super::flow::{BodyLayers, SuspensionFlow};
 use super::resolution::{first, refined};
 use super::solution::{Care, Iteration, Solution, solve};
+use super::sums::Operators;
 use crate::body::dirichlet::Formulation;
 use crate::body::frame::Frame;
 use crate::body::linear_flow::LinearFlow;
@@ -238,8 +239,8 @@ impl<'a> Suspension<'a> {
         self.gaps(0.0, progress)?;
         let kinds = self.kinds(resolutions)?;
         self.check_memory(&kinds, "panels, order and modes by hand")?;
-        let known = Classes::default();
-        let round = self.round(&kinds, tolerance, &known, None, progress)?;
+        let (known, operators) = (Classes::default(), Operators::default());
+        let round = self.round(&kinds, tolerance, &known, None, &operators, progress)?;
         let products = round.solution.iteration.products;
         self.answer(round, tolerance, products, begin, progress)
     }
@@ -279,6 +280,7 @@ impl<'a> Suspension<'a> {
                     return Ok(Start {
                         kinds,
                         known: Classes::default(),
+                        operators: Operators::default(),
                     });
                 }
                 Err(error) if looser > COARSEST => return Err(error),
@@ -294,8 +296,12 @@ impl<'a> Suspension<'a> {
         tolerance: f64,
         progress: &dyn Progress,
     ) -> Result<Converged, SuspensionError> {
-        let Start { mut kinds, known } = start;
-        let mut latest = self.round(&kinds, tolerance, &known, None, progress)?;
+        let Start {
+            mut kinds,
+            known,
+            operators,
+        } = start;
+        let mut latest = self.round(&kinds, tolerance, &known, None, &operators, progress)?;
         let mut products = 0;
         let mut best = latest.clone();
         let mut without_gain = 0;
@@ -312,7 +318,14 @@ impl<'a> Suspension<'a> {
             kinds = finer;
             products += latest.solution.iteration.products;
             let known = &latest.solution.classes;
-            let next = self.round(&kinds, tolerance, known, Some(&latest.solution), progress)?;
+            let next = self.round(
+                &kinds,
+                tolerance,
+                known,
+                Some(&latest.solution),
+                &operators,
+                progress,
+            )?;
             let gain = next.error_estimate < 0.5 * best.error_estimate;
             without_gain = if gain { 0 } else { without_gain + 1 };
             if next.error_estimate < best.error_estimate {
@@ -324,6 +337,7 @@ impl<'a> Suspension<'a> {
         Ok(Converged {
             best,
             kinds,
+            operators,
             products,
         })
     }
@@ -396,13 +410,14 @@ impl<'a> Suspension<'a> {
         tolerance: f64,
         known: &Classes,
         before: Option<&Solution>,
+        operators: &Operators,
         progress: &dyn Progress,
     ) -> Result<Round, SuspensionError> {
         let rest = self
             .memory()
             .saturating_sub(needed_memory(kinds, &self.options));
         let care = self.care(tolerance, rest);
-        let (solution, imposed) = solve(self, kinds, care, known, before, progress)?;
+        let (solution, imposed) = solve(self, kinds, care, known, before, operators, progress)?;
         let Iteration {
             iterations,
             residual,
@@ -420,7 +435,7 @@ impl<'a> Suspension<'a> {
             });
         }
         let start = Instant::now();
-        let misses = misses(self, &solution, care.product, progress)?;
+        let misses = misses(self, &solution, care.product, operators, progress)?;
         let speed = self.largest_speed(&solution, imposed);
         let error_estimate = self.error_estimate(&solution, &misses, speed);
         Ok(Round {
@@ -614,14 +629,16 @@ fn extent(curve: &dyn GeneratingCurve) -> f64 {
 /// Where to begin.
 pub(crate) struct Start {
     kinds: Vec<Kind>,
-    /// What is factored already.
+    /// What is factored already, and the operators of sums.
     known: Classes,
+    operators: Operators,
 }
 
 /// Where it ended.
 pub(crate) struct Converged {
     pub best: Round,
     kinds: Vec<Kind>,
+    operators: Operators,
     products: usize,
 }
 
@@ -631,6 +648,7 @@ impl Converged {
         Start {
             kinds: self.kinds,
             known: self.best.solution.classes,
+            operators: self.operators,
         }
     }
 }

@@ -37,13 +37,16 @@ const AZIMUTHS: usize = 6;
 pub(crate) struct RigidTractions {
     /// Points on the surface and, motion by motion, the force of the traction on the point's share of it.
     points: Vec<Vector3<f64>>,
-    forces: Vec<[Vector3<f64>; 6]>,
+    forces: Vec<SixForces>,
     /// $R^{-1}$.
     mobility: Matrix6<f64>,
     /// $E$ and, with the same numbers, the functionals $\int \tau_k \cdot f$: scaled modes 0 and 1, motion by motion.
     motions: Vec<Vec<f64>>,
     functionals: Vec<Vec<f64>>,
 }
+
+/// At one point, the forces of the six motions.
+type SixForces = [Vector3<f64>; 6];
 
 fn elementary(k: usize) -> RigidMotion {
     let mut motion = RigidMotion::rest();
@@ -122,7 +125,7 @@ impl RigidTractions {
 fn coarse_points(
     discretization: &Discretization,
     tractions: &[SurfaceModes],
-) -> Result<(Vec<Vector3<f64>>, Vec<[Vector3<f64>; 6]>), QuadratureError> {
+) -> Result<(Vec<Vector3<f64>>, Vec<SixForces>), QuadratureError> {
     let curve = discretization.curve();
     let panels = discretization.panels().as_slice();
     let (order, basis) = (discretization.order(), discretization.basis());

@@ -77,7 +77,6 @@ pub mod body;
 pub mod case;
 pub mod curve;
 pub mod kernel;
-pub mod multibody;
 pub mod krylov;
 pub mod multibody;
 pub mod output;

@@ -34,8 +34,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let case = Case::parse(CASE, "flow_field")?;
     let solved = solve(&case, &Silent)?;
 
-    // Of the body's length only the size of the plane depends, and that is given.
-    let plane = Plane::of_case(&case, 2.0);
+    // Of the body's half length only the size of the plane depends, and that is given.
+    let plane = Plane::of_case(&case, &[1.0]);
     let velocity = Vector3::from(solved.report.bodies[0].velocity);
     let flow = PlaneFlow::sample(&solved, plane, &Silent)?.relative_to(velocity);
     let drawn = picture(&flow, &solved.sections(&plane)?, Quantity::Speed)?;

@@ -28,7 +28,7 @@ pub(super) struct FarFlow {
     /// Panel after panel, each padded.
     pub points: SurfacePoints,
     per_panel: usize,
-    azimuths: usize,
+    pub azimuths: usize,
     order: usize,
     /// Logarithm of each mode's largest coefficient relative to the largest of all, and panel after panel the same of its Legendre
     /// coefficients along the curve.

@@ -179,6 +179,26 @@ impl<'a> Flow<'a> {
         Ok(())
     }
 
+    /// Modes of the densities.
+    pub(crate) fn modes(&self) -> usize {
+        self.layers.modes()
+    }
+
+    /// Those points on the ring of a node.
+    pub(crate) fn azimuths(&self) -> Result<usize, FlowError> {
+        Ok(self.far()?.azimuths)
+    }
+
+    /// The flow of those points alone.
+    pub(crate) fn of_points(
+        &self,
+        targets: &[Point3<f64>],
+    ) -> Result<Vec<FlowGradientAt>, FlowError> {
+        let points = &self.far()?.points;
+        let at = |&target: &Point3<f64>| points.sum::<true>(0..points.len(), target);
+        Ok(targets.par_iter().map(at).collect())
+    }
+
     fn densities(&self) -> &Densities {
         self.densities
             .get_or_init(|| Densities::new(self.discretization, &self.layers))

@@ -168,6 +168,9 @@ pub enum ProblemError {
         /// Memory of the matrices.
         gigabytes: f64,
     },
+    /// Whoever waited has lost interest.
+    #[error("interrupted")]
+    Interrupted,
     /// The velocity imposed is not finite somewhere on the surface.
     #[error("the velocity imposed on the surface is not finite everywhere")]
     Velocity,
@@ -341,6 +344,9 @@ impl<'a> Problem<'a> {
         care: Care,
         progress: &dyn Progress,
     ) -> Result<Solution, ProblemError> {
+        if progress.is_cancelled() {
+            return Err(ProblemError::Interrupted);
+        }
         let discretization = self.discretization(&resolution.panels, resolution.order)?;
         let background = self.background.on(&discretization);
         let (slip, fastest) =
@@ -375,6 +381,9 @@ impl<'a> Problem<'a> {
             motion,
             slip,
         };
+        if progress.is_cancelled() {
+            return Err(ProblemError::Interrupted);
+        }
         let flow = body_flow.evaluate(self.targets, care.evaluation, progress)?;
         Ok(Solution {
             body_flow,

@@ -11,7 +11,7 @@ use panel_quadrature::QuadratureError;
 use rayon::slice::ParallelSliceMut;
 use rustfft::{Fft, FftPlanner};
 
-use super::discretization::Discretization;
+use super::discretization::{Discretization, Node};
 
 /// Modes of a real vector field at the nodes of a generating curve.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,26 +68,43 @@ impl SurfaceModes {
         f: impl Fn(Vector3<f64>, Vector3<f64>) -> Vector3<f64>,
     ) -> Sampled {
         let nodes = discretization.nodes();
-        let count = azimuths(n_max);
-        let fft: Arc<dyn Fft<f64>> = FftPlanner::new().plan_fft_forward(count);
-        let mut modes = Self::zero(n_max, nodes.len());
         let mut largest = 0.0f64;
+        let value = |k: usize, [cos, sin]: [f64; 2]| {
+            let Node { r, z, normal, .. } = nodes[k];
+            let at = |r: f64, z: f64| Vector3::new(r * cos, r * sin, z);
+            let value = f(at(r, z), at(normal[0], normal[1]));
+            // `max` would pass over a NaN.
+            let magnitude = value.norm();
+            largest = if magnitude.is_nan() {
+                f64::INFINITY
+            } else {
+                largest.max(magnitude)
+            };
+            value
+        };
+        let modes = Self::of_samples(nodes.len(), n_max, [azimuths(n_max), 0], value);
+        Sampled { modes, largest }
+    }
+
+    /// The modes up to `n_max` of a field on rings of `count` points, the first of them `halves` half steps from azimuth zero: the Cartesian `value` at
+    /// a node and a point's cosine and sine, asked for ring after ring.
+    pub(crate) fn of_samples(
+        nodes: usize,
+        n_max: usize,
+        [count, halves]: [usize; 2],
+        mut value: impl FnMut(usize, [f64; 2]) -> Vector3<f64>,
+    ) -> Self {
+        let fft: Arc<dyn Fft<f64>> = FftPlanner::new().plan_fft_forward(count);
+        let mut modes = Self::zero(n_max, nodes);
         let mut rings = [(); 3].map(|()| vec![Complex64::default(); count]);
-        for (k, node) in nodes.iter().enumerate() {
+        let offset = PI * halves as f64 / count as f64;
+        for k in 0..nodes {
             let [radial, azimuthal, axial] = &mut rings;
             for (l, ((radial, azimuthal), axial)) in
                 radial.iter_mut().zip(azimuthal).zip(axial).enumerate()
             {
-                let (sin, cos) = (2.0 * PI * l as f64 / count as f64).sin_cos();
-                let at = |r: f64, z: f64| Vector3::new(r * cos, r * sin, z);
-                let value = f(at(node.r, node.z), at(node.normal[0], node.normal[1]));
-                // `max` would pass over a NaN.
-                let magnitude = value.norm();
-                largest = if magnitude.is_nan() {
-                    f64::INFINITY
-                } else {
-                    largest.max(magnitude)
-                };
+                let (sin, cos) = (2.0 * PI * l as f64 / count as f64 + offset).sin_cos();
+                let value = value(k, [cos, sin]);
                 *radial = (value.x * cos + value.y * sin).into();
                 *azimuthal = (value.y * cos - value.x * sin).into();
                 *axial = value.z.into();
@@ -96,6 +113,7 @@ impl SurfaceModes {
                 fft.process(ring);
                 for (n, c) in ring.iter().enumerate().take(n_max + 1) {
                     let scale = if n == 0 { 1.0 } else { 2.0 } / count as f64;
+                    let c = c * Complex64::cis(-(n as f64) * offset);
                     let (cos, sin) = (scale * c.re, -scale * c.im);
                     if j == 1 {
                         modes.component_mut(n, 0, j)[k] = sin;
@@ -107,7 +125,7 @@ impl SurfaceModes {
                 }
             }
         }
-        Sampled { modes, largest }
+        modes
     }
 
     /// The same field without the modes above `n_max`.

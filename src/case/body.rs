@@ -12,6 +12,7 @@ const KEYS: &[&str] = &[
     "shape",
     "center",
     "axis",
+    "scale",
     "velocity",
     "angular_velocity",
     "force",
@@ -31,6 +32,8 @@ pub struct Body {
     pub center: [f64; 3],
     /// Direction of the symmetry axis, of length one; z if not given.
     pub axis: [f64; 3],
+    /// How many times larger the body is than its shape, positive; 1 if not given.
+    pub scale: f64,
     /// What is imposed on it.
     pub motion: Located<Motion>,
     /// Tangential velocity of its surface relative to the body.
@@ -90,6 +93,9 @@ fn read_body(
         axis: section
             .read("axis", Node::direction)?
             .unwrap_or([0.0, 0.0, 1.0]),
+        scale: section
+            .read("scale", |node| node.positive("a scale"))?
+            .unwrap_or(1.0),
         motion: read_motion(&section)?,
         slip: section.read("slip", |node| {
             Ok(node.located(read_slip(node.clone(), spec)?))

@@ -15,7 +15,7 @@ pub const MOST_PLANE_POINTS: usize = 1001;
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct PlaneOptions {
-    /// The middle; the first body's centre if not given.
+    /// The middle; if not given, the only body's centre or that of all.
     pub center: Option<[f64; 3]>,
     /// How it lies in space.
     pub orientation: Option<Orientation>,

@@ -5,7 +5,7 @@ use super::accuracy::read_tolerance;
 use super::node::Node;
 use super::section::Section;
 
-/// What `[solver]` asks for. A direct solve uses only the formulation.
+/// What `[solver]` asks for. One body is solved for directly, which uses only the formulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SolverOptions {
@@ -17,6 +17,8 @@ pub struct SolverOptions {
     pub tolerance: Option<f64>,
     /// Most iterations.
     pub max_iterations: usize,
+    /// Most memory that many bodies may take, in GiB; `None` leaves it to what the machine has.
+    pub memory: Option<f64>,
 }
 
 impl Default for SolverOptions {
@@ -26,6 +28,7 @@ impl Default for SolverOptions {
             method: Method::default(),
             tolerance: None,
             max_iterations: 200,
+            memory: None,
         }
     }
 }
@@ -52,7 +55,13 @@ pub enum Method {
 
 /// Reads `[solver]`.
 pub(super) fn read_solver(node: Node<'_>) -> Result<SolverOptions, CaseError> {
-    let keys = ["formulation", "method", "tolerance", "max_iterations"];
+    let keys = [
+        "formulation",
+        "method",
+        "tolerance",
+        "max_iterations",
+        "memory",
+    ];
     let section = Section::new(node, &keys)?;
     let formulations = [
         ("combined", Formulation::Combined),
@@ -73,5 +82,6 @@ pub(super) fn read_solver(node: Node<'_>) -> Result<SolverOptions, CaseError> {
                 node.integer("a number of iterations", 1..=1_000_000)
             })?
             .unwrap_or(default.max_iterations),
+        memory: section.read("memory", |node| node.positive("a number of GiB"))?,
     })
 }

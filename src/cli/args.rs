@@ -16,7 +16,8 @@ Examples:
   axistokes --threads 4 converge --quick      the convergence study, small, on four threads
 
 Exit status: 0 solved, 2 bad input (one line on stderr, nothing written),
-3 solved but the error estimate misses the tolerance, 1 anything else.";
+3 solved but the error estimate misses the tolerance, 130 interrupted (Ctrl-C),
+1 anything else.";
 
 const SOLVE_EXAMPLE: &str = "\
 A first case, the drag of a sphere (the force is 6 pi in z):
@@ -91,6 +92,9 @@ pub struct Solve {
     /// Print one JSON object and nothing else on stdout.
     #[arg(long)]
     pub json: bool,
+    /// Show every body in the table, also if there are more than twenty.
+    #[arg(long, conflicts_with = "json")]
+    pub all: bool,
     /// Draw the flow in a plane: colours, streamlines, bodies. The plane is [plane] of the case, or one in which much is to be seen.
     #[arg(long, value_name = "FILE.svg")]
     pub picture: Option<PathBuf>,

@@ -5,6 +5,9 @@ use axistokes::solve::SolveError;
 use axistokes::study::StudyError;
 use std::process::ExitCode;
 
+/// The status of a program that was interrupted, as shells have it.
+pub const INTERRUPTED_STATUS: u8 = 130;
+
 /// Why a command failed.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
@@ -14,6 +17,9 @@ pub enum Failure {
     /// The answer is worse than asked: status 3.
     #[error("{0}")]
     Missed(String),
+    /// Ctrl-C: status 130.
+    #[error("interrupted: nothing was written")]
+    Interrupted,
     /// Something else went wrong: status 1.
     #[error("{0}")]
     Other(String),
@@ -25,6 +31,7 @@ impl Failure {
         ExitCode::from(match self {
             Self::Input(_) => 2,
             Self::Missed(_) => 3,
+            Self::Interrupted => INTERRUPTED_STATUS,
             Self::Other(_) => 1,
         })
     }
@@ -35,6 +42,7 @@ impl From<SolveError> for Failure {
         let line = error.to_string();
         match error {
             SolveError::Case(_) => Self::Input(line),
+            SolveError::Interrupted => Self::Interrupted,
             _ => Self::Other(line),
         }
     }

@@ -9,7 +9,7 @@ use axistokes::output::picture::{PictureError, Quantity, picture};
 use axistokes::output::vtk::{Surface, VtkError, plane_file};
 use axistokes::plane::{Plane, PlaneFlow};
 use axistokes::progress::Progress;
-use axistokes::solve::Solved;
+use axistokes::solve::{Solved, SolvedBody};
 use std::ffi::OsStr;
 use std::path::Path;
 
@@ -64,7 +64,10 @@ impl Files {
         }
         if let Some(folder) = &self.vtk {
             progress.begin("surface", 0);
-            written.push((folder, vtk_files(case, solved, &flow)?));
+            written.push((folder, vtk_files(case, solved, &flow, progress)?));
+        }
+        if progress.is_cancelled() {
+            return Err(Failure::Interrupted);
         }
         let mut names = Vec::new();
         for (folder, files) in &written {
@@ -97,8 +100,8 @@ fn picture_file(path: &Path, quantity: Quantity) -> Result<(Folder, String, Quan
 
 /// The flow in the plane of the case, seen by whom it says.
 fn plane_flow(case: &Case, solved: &Solved, progress: &dyn Progress) -> Result<PlaneFlow, Failure> {
-    let length = 2.0 * solved.bodies[0].flow().discretization.size();
-    let flow = PlaneFlow::sample(solved, Plane::of_case(case, length), progress)?;
+    let sizes: Vec<f64> = solved.bodies.iter().map(SolvedBody::size).collect();
+    let flow = PlaneFlow::sample(solved, Plane::of_case(case, &sizes), progress)?;
     Ok(match case.plane.frame {
         PlaneFrame::Laboratory => flow,
         PlaneFrame::Body => flow.relative_to(Vector3::from(solved.report.bodies[0].velocity)),
@@ -116,23 +119,19 @@ fn vtk_files(
     case: &Case,
     solved: &Solved,
     flow: &PlaneFlow,
+    progress: &dyn Progress,
 ) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     let stem = case
         .path
         .file_stem()
         .and_then(OsStr::to_str)
         .unwrap_or("case");
-    let mut files = Vec::new();
-    for (number, body) in (1..).zip(&solved.bodies) {
-        let modes = body.flow().layers.modes();
-        let azimuths = (4 * modes).clamp(AZIMUTHS[0], AZIMUTHS[1]);
-        let surface = Surface::of(body, azimuths)
-            .map_err(|error| Failure::Other(error.to_string()))?
-            .file()?;
-        files.push((format!("{stem}-body-{number}.vtu"), surface));
-    }
-    files.push((format!("{stem}-plane.vts"), plane_file(flow)?));
-    Ok(files)
+    let azimuths = |body: &SolvedBody| (4 * body.modes()).clamp(AZIMUTHS[0], AZIMUTHS[1]);
+    let surfaces = Surface::of(solved, azimuths, progress)?.file()?;
+    Ok(vec![
+        (format!("{stem}-bodies.vtu"), surfaces),
+        (format!("{stem}-plane.vts"), plane_file(flow)?),
+    ])
 }
 
 impl From<PictureError> for Failure {

@@ -1,5 +1,6 @@
 //! Progress on stderr, for people who wait.
 
+use super::failure::{Failure, INTERRUPTED_STATUS};
 use axistokes::progress::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{IsTerminal, stderr};
@@ -8,6 +9,9 @@ use std::time::{Duration, Instant};
 
 /// How long a computation stays quiet.
 const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Whether Ctrl-C was pressed.
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// A bar on stderr: only if that is a terminal, and only after two seconds.
 pub struct StderrBar {
@@ -28,6 +32,17 @@ impl StderrBar {
             start: Instant::now(),
             hidden: AtomicBool::new(stderr().is_terminal()),
         }
+    }
+
+    /// The same, and Ctrl-C cancels what it shows. Pressed once more, it ends the program.
+    pub fn stopped_by_ctrl_c() -> Result<Self, Failure> {
+        ctrlc::set_handler(|| {
+            if INTERRUPTED.swap(true, Ordering::Relaxed) {
+                std::process::exit(i32::from(INTERRUPTED_STATUS));
+            }
+        })
+        .map_err(|error| Failure::Other(format!("cannot listen for Ctrl-C: {error}")))?;
+        Ok(Self::new())
     }
 
     fn show_if_late(&self) {
@@ -51,6 +66,10 @@ impl Progress for StderrBar {
     fn advance(&self, steps: usize) {
         self.bar.inc(steps as u64);
         self.show_if_late();
+    }
+
+    fn is_cancelled(&self) -> bool {
+        INTERRUPTED.load(Ordering::Relaxed)
     }
 }
 

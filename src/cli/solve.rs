@@ -13,7 +13,7 @@ use axistokes::solve::{SolveError, solve};
 pub fn run(arguments: &Solve) -> Result<(), Failure> {
     let case = Case::read(&arguments.case).map_err(SolveError::from)?;
     let files = Files::asked(arguments, &case)?;
-    let bar = StderrBar::new();
+    let bar = StderrBar::stopped_by_ctrl_c()?;
     let solved = solve(&case, &bar)?;
     let line = |message: &str| CaseError::new(case.path.display(), None, message).to_string();
     let report = &solved.report;
@@ -27,7 +27,7 @@ pub fn run(arguments: &Solve) -> Result<(), Failure> {
         json.map(|json| json + "\n")
             .map_err(|error| Failure::Other(error.to_string()))?
     } else {
-        table(&case, report) + &written
+        table(&case, report, arguments.all) + &written
     };
     streams::print(&text)?;
     match missed(&case, report.error_estimate) {

@@ -1,5 +1,7 @@
 //! The flow of many bodies at any points.
 
+use std::ops::Range;
+
 use nalgebra::{Matrix3, Point3, Vector3};
 use rayon::prelude::*;
 use stokes_fmm::{Output, Points, Singularities, Strengths, Stresslets};
@@ -7,10 +9,11 @@ use stokes_fmm::{Output, Points, Singularities, Strengths, Stresslets};
 use super::SuspensionError;
 use super::sums::{Operators, Sums};
 use crate::body::discretization::Discretization;
-use crate::body::flow::{Flow, FlowError, first_not_finite};
+use crate::body::flow::{Flow, FlowError, Side, first_not_finite};
 use crate::body::frame::Frame;
 use crate::body::layers::Layers;
-use crate::body::linear_flow::LinearFlow;
+use crate::body::linear_flow::{self, LinearFlow};
+use crate::body::surface::SurfaceModes;
 use crate::kernel::{FlowAt, FlowGradientAt};
 use crate::progress::{Progress, Silent};
 
@@ -38,6 +41,10 @@ pub struct SuspensionFlow {
 const MARGIN: f64 = 1e-2;
 /// Targets that are evaluated between two reports of progress.
 const CHUNK: usize = 1 << 16;
+/// Bodies whose tractions are found together.
+const BODIES: usize = 64;
+/// Half steps between the points of a ring and those at which the others' tractions are sampled: as far from them as can be.
+const HALVES: usize = 1;
 
 impl SuspensionFlow {
     /// Velocity and pressure at every target, to about `tolerance` relative to the densities; on a surface, the limits from outside. Targets inside
@@ -76,6 +83,93 @@ impl SuspensionFlow {
         self.sum::<true>(targets, tolerance, &Silent)
     }
 
+    /// The traction $\\sigma\\nu$ of the fluid on the surfaces of some bodies, background included, with the normal $\\nu$ out of the body: forces per area of the
+    /// laboratory, as vectors in the body's frame.
+    ///
+    /// A body's own layers are taken mode by mode, what the others do on rings of points.
+    ///
+    /// # Errors
+    /// If a quadrature rule is missing, or whoever waits has lost interest.
+    pub fn tractions(
+        &self,
+        bodies: &[usize],
+        tolerance: f64,
+        progress: &dyn Progress,
+    ) -> Result<Vec<SurfaceModes>, SuspensionError> {
+        progress.begin("tractions", bodies.len());
+        let flows = self.flows();
+        let sources = Sources::new(self, &flows)?;
+        let mut tractions = Vec::with_capacity(bodies.len());
+        for some in bodies.chunks(BODIES) {
+            if progress.is_cancelled() {
+                return Err(SuspensionError::Interrupted);
+            }
+            tractions.extend(self.some_tractions(some, &flows, &sources, tolerance)?);
+            progress.advance(some.len());
+        }
+        Ok(tractions)
+    }
+
+    fn some_tractions(
+        &self,
+        bodies: &[usize],
+        flows: &[Flow<'_>],
+        sources: &Sources,
+        tolerance: f64,
+    ) -> Result<Vec<SurfaceModes>, SuspensionError> {
+        let mut targets = Vec::new();
+        let mut own = Vec::with_capacity(bodies.len());
+        let mut left_out = vec![0..0; flows.len()];
+        for &body in bodies {
+            let BodyLayers {
+                frame,
+                discretization,
+                ..
+            } = &self.bodies[body];
+            let points = ring_points(discretization, flows[body].azimuths()?);
+            let first = targets.len();
+            targets.extend(points.iter().map(|&x| frame.point_to_lab(x)));
+            left_out[body] = first..targets.len();
+            own.push(points);
+        }
+        let mut found = Vec::with_capacity(targets.len());
+        for some in targets.chunks(CHUNK) {
+            found.extend(sources.at::<true>(some, tolerance)?);
+        }
+        self.correct::<true>(flows, &targets, tolerance, &left_out, &mut found)?;
+        let tractions = bodies.iter().zip(own).map(|(&body, points)| {
+            let BodyLayers {
+                frame,
+                discretization,
+                ..
+            } = &self.bodies[body];
+            let flow = &flows[body];
+            let mut of_own = flow.of_points(&points)?.into_iter();
+            let mut found = found[left_out[body].clone()].iter();
+            let of_others = |k: usize, [cos, sin]: [f64; 2]| {
+                let [across, along] = discretization.nodes()[k].normal;
+                let normal = Vector3::new(across * cos, across * sin, along);
+                let mut at = found.next().copied().unwrap_or_default();
+                at -= in_lab(frame, of_own.next().unwrap_or_default());
+                at.gradient += self.background.gradient;
+                frame.vector_to_body(at.stress() * frame.vector_to_lab(normal))
+            };
+            let samples = [flow.azimuths()?, HALVES];
+            let n_max = (flow.modes() - 1).max(linear_flow::LAST_MODE);
+            let nodes = discretization.nodes().len();
+            let of_others = SurfaceModes::of_samples(nodes, n_max, samples, of_others);
+            Ok(of_others.plus(1.0 / frame.scale(), &flow.traction(Side::Exterior)?))
+        });
+        tractions.collect()
+    }
+
+    fn flows(&self) -> Vec<Flow<'_>> {
+        let flows = self.bodies.iter();
+        flows
+            .map(|body| Flow::new(&body.discretization, body.layers.clone()))
+            .collect()
+    }
+
     fn sum<const GRADIENT: bool>(
         &self,
         targets: &[Point3<f64>],
@@ -86,60 +180,76 @@ impl SuspensionFlow {
             return Err(FlowError::NotFinite { index }.into());
         }
         progress.begin("evaluating", targets.len());
-        let flows: Vec<Flow<'_>> = (self.bodies.iter())
-            .map(|body| Flow::new(&body.discretization, body.layers.clone()))
-            .collect();
+        let flows = self.flows();
         let sources = Sources::new(self, &flows)?;
-        let mut all = Vec::with_capacity(targets.len());
+        let mut evaluated = Vec::with_capacity(targets.len());
+        let all = vec![0..0; flows.len()];
         for some in targets.chunks(CHUNK) {
             if progress.is_cancelled() {
                 return Err(SuspensionError::Interrupted);
             }
             let mut found = sources.at::<GRADIENT>(some, tolerance)?;
-            self.correct::<GRADIENT>(&flows, some, tolerance, &mut found)?;
+            self.correct::<GRADIENT>(&flows, some, tolerance, &all, &mut found)?;
             for (at, target) in found.iter_mut().zip(some) {
                 at.velocity += self.background.at(target.coords);
                 at.gradient += self.background.gradient;
             }
-            all.extend(found);
+            evaluated.extend(found);
             progress.advance(some.len());
         }
-        Ok(all)
+        Ok(evaluated)
     }
 
-    /// Puts right what points near a body get wrong.
+    /// Puts right what points near a body get wrong, but for the targets that each body leaves out.
     fn correct<const GRADIENT: bool>(
         &self,
         flows: &[Flow<'_>],
         targets: &[Point3<f64>],
         tolerance: f64,
+        left_out: &[Range<usize>],
         found: &mut [FlowGradientAt],
     ) -> Result<(), SuspensionError> {
-        let corrections = self.bodies.par_iter().zip(flows).map(|(body, flow)| {
-            let frame = &body.frame;
+        let corrections = (0..flows.len()).into_par_iter().map(|body| {
+            let (frame, flow) = (&self.bodies[body].frame, &flows[body]);
             let reach = flow.correction_reach(tolerance)?;
             let near = targets.iter().enumerate().filter_map(|(index, &target)| {
                 let at = frame.point_to_body(target);
-                (at.coords.norm() <= reach).then_some((index, at))
+                let is_near = at.coords.norm() <= reach && !left_out[body].contains(&index);
+                is_near.then_some((index, at))
             });
             let (indices, near): (Vec<usize>, Vec<Point3<f64>>) = near.unzip();
             let corrections = flow.corrections::<GRADIENT>(&near, tolerance)?;
-            let in_lab = corrections.into_iter().map(|(place, at)| {
-                let in_lab = FlowGradientAt {
-                    velocity: frame.vector_to_lab(at.velocity),
-                    pressure: at.pressure / frame.scale(),
-                    gradient: frame.tensor_to_lab(&at.gradient) / frame.scale(),
-                };
-                (indices[place], in_lab)
-            });
-            Ok(in_lab.collect::<Vec<_>>())
+            let corrections = corrections.into_iter();
+            Ok(corrections
+                .map(|(place, at)| (indices[place], in_lab(frame, at)))
+                .collect())
         });
-        for of_body in corrections.collect::<Result<Vec<_>, FlowError>>()? {
+        for of_body in corrections.collect::<Result<Vec<Vec<_>>, FlowError>>()? {
             for (index, correction) in of_body {
                 found[index] += correction;
             }
         }
         Ok(())
+    }
+}
+
+/// Points on rings of so many, ring after ring, between those of the densities; in the body's frame.
+fn ring_points(discretization: &Discretization, azimuths: usize) -> Vec<Point3<f64>> {
+    let nodes = discretization.nodes();
+    let mut points = Vec::with_capacity(nodes.len() * azimuths);
+    SurfaceModes::of_samples(nodes.len(), 0, [azimuths, HALVES], |k, [cos, sin]| {
+        points.push(Point3::new(nodes[k].r * cos, nodes[k].r * sin, nodes[k].z));
+        Vector3::zeros()
+    });
+    points
+}
+
+/// A flow at a point of the body's frame, in the laboratory.
+fn in_lab(frame: &Frame, at: FlowGradientAt) -> FlowGradientAt {
+    FlowGradientAt {
+        velocity: frame.vector_to_lab(at.velocity),
+        pressure: at.pressure / frame.scale(),
+        gradient: frame.tensor_to_lab(&at.gradient) / frame.scale(),
     }
 }
 

@@ -12,6 +12,7 @@ pub(crate) mod coarse;
 pub mod contact;
 mod descent;
 pub mod flow;
+mod further;
 pub mod grand;
 pub mod interactions;
 mod meridian;

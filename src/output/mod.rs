@@ -8,7 +8,7 @@ pub mod study;
 mod table;
 pub mod vtk;
 
-pub use report::{BodyReport, Discretization, KnownFlowReport, ProbeReport, Report, Timings};
+pub use report::{BodyReport, Discretization, KnownFlowReport, ProbeReport, Report, Stop, Timings};
 pub use resistance::{ResistanceReport, ShapeReport};
 use table::error_line;
-pub use table::table;
+pub use table::{FEW_BODIES, table};

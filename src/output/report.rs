@@ -16,9 +16,17 @@ pub struct Report {
     pub pressure_error_estimate: f64,
     /// Iterations of the linear solver; 0 for a direct solve.
     pub iterations: usize,
+    /// Products with the system's matrix, those of coarser solutions before the last one included; 0 for a direct solve.
+    pub products: usize,
+    /// The relative residual that the iteration came to.
+    pub residual: Option<f64>,
+    /// Why the iteration ended.
+    pub stop: Stop,
     /// Unknowns of the linear system, all modes together.
     pub unknowns: usize,
-    /// One entry per shape in use.
+    /// Points on the surfaces of all bodies that the interactions are summed over; a single body has none.
+    pub points: Option<usize>,
+    /// One entry per shape and resolution in use.
     pub discretization: Vec<Discretization>,
     /// Seconds spent in each stage.
     pub timings: Timings,
@@ -44,7 +52,7 @@ pub struct BodyReport {
     pub stresslet_error_estimate: f64,
     /// Rate of work that the surface does on the fluid; not for a case with `[test]`, whose tractions would cost more than its answer.
     pub power: Option<f64>,
-    /// Its estimated error, absolute.
+    /// Its estimated error, absolute; not known for one of many bodies with a slip.
     pub power_error_estimate: Option<f64>,
 }
 
@@ -70,20 +78,36 @@ pub struct Discretization {
     pub order: usize,
     /// Azimuthal modes.
     pub modes: usize,
+    /// Bodies that are so discretised; not in a report of shapes alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bodies: Option<usize>,
+}
+
+/// Why the solution of the linear system ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stop {
+    /// It was solved directly.
+    #[default]
+    Direct,
+    /// The residual is as small as it was to be.
+    Converged,
+    /// The residual no longer fell, not far above what it was to be: the error estimate tells whether that was enough.
+    Stagnated,
 }
 
 /// Seconds of wall clock spent in each stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Timings {
-    /// Assembling the modal matrices.
+    /// Assembling the modal matrices; of many bodies, finding what is near each other.
     pub assemble: f64,
-    /// Factoring them.
+    /// Factoring them; of many bodies, assembling them too.
     pub factor: f64,
     /// Solving: substitutions, or iterations.
     pub iterate: f64,
     /// Evaluating the flow at the probes.
     pub evaluate: f64,
-    /// Everything else: choosing the resolution, and the second solution that the error is estimated from.
+    /// Everything else: choosing the resolution, coarser solutions, and what the error is estimated from.
     pub estimate: f64,
 }
 
@@ -116,7 +140,11 @@ impl Report {
             if !body.stresslet_error_estimate.is_finite() {
                 return Some(format!("bodies[{i}].stresslet_error_estimate"));
             }
-            if body.power.is_some_and(|power| !power.is_finite()) {
+            if [body.power, body.power_error_estimate]
+                .iter()
+                .flatten()
+                .any(|x| !x.is_finite())
+            {
                 return Some(format!("bodies[{i}].power"));
             }
         }
@@ -175,7 +203,11 @@ mod tests {
             "error_estimate",
             "iterations",
             "pressure_error_estimate",
+            "points",
             "probes",
+            "products",
+            "residual",
+            "stop",
             "timings",
             "unknowns",
         ];

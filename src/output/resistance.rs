@@ -67,6 +67,7 @@ impl ShapeReport {
                 panels: matrices.resolution.panels.len(),
                 order: matrices.resolution.order,
                 modes: matrices.resolution.modes,
+                bodies: None,
             },
         }
     }

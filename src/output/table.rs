@@ -1,18 +1,22 @@
 //! The answer as a table for people.
 
-use super::{Discretization, KnownFlowReport, ProbeReport, Report};
+use super::{BodyReport, Discretization, KnownFlowReport, ProbeReport, Report, Stop};
 use crate::case::Case;
 use std::fmt::{self, Write};
 
-/// The report as aligned text; units are those of the case, made consistent by its viscosity.
-pub fn table(case: &Case, report: &Report) -> String {
+/// The most bodies that the table shows one by one, unless told to show all.
+pub const FEW_BODIES: usize = 20;
+
+/// The report as aligned text; units are those of the case, made consistent by its viscosity. Of more than [`FEW_BODIES`] it shows what they have in
+/// common, or `all` of them.
+pub fn table(case: &Case, report: &Report, all: bool) -> String {
     let mut text = String::new();
     // writing to a string does not fail
-    let _ = write_table(&mut text, case, report);
+    let _ = write_table(&mut text, case, report, all);
     text
 }
 
-fn write_table(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
+fn write_table(out: &mut String, case: &Case, report: &Report, all: bool) -> fmt::Result {
     writeln!(
         out,
         "{}: viscosity {}, everything in the units of the case",
@@ -23,16 +27,33 @@ fn write_table(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
     if let Some(test) = &report.test {
         write_known_flow(out, test)?;
     }
-    write_bodies(out, case, report)?;
+    if all || report.bodies.len() <= FEW_BODIES {
+        write_bodies(out, case, report)?;
+    } else {
+        write_summary(out, report)?;
+    }
     if !report.probes.is_empty() {
         write_probes(out, &report.probes, report.pressure_error_estimate)?;
     }
     write_discretization(out, &report.discretization)?;
-    let solve = match report.iterations {
-        0 => "direct solve".to_owned(),
-        n => format!("{n} iterations"),
+    let (stop, residual) = (report.stop, report.residual.unwrap_or_default());
+    let solve = match stop {
+        Stop::Direct => "direct solve".to_owned(),
+        Stop::Converged | Stop::Stagnated => {
+            let how = if stop == Stop::Converged {
+                "to"
+            } else {
+                "stagnated at"
+            };
+            let (iterations, products) = (report.iterations, report.products);
+            format!(
+                "{iterations} iterations {how} a residual of {residual:.1e}, {products} products"
+            )
+        }
     };
-    writeln!(out, "{} unknowns, {solve}", report.unknowns)?;
+    let points = report.points.map(|points| format!(", {points} points"));
+    let points = points.unwrap_or_default();
+    writeln!(out, "{} unknowns{points}, {solve}", report.unknowns)?;
     let t = &report.timings;
     writeln!(
         out,
@@ -101,10 +122,12 @@ fn write_bodies(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
                 numbers(vector)
             )?;
         }
-        let mut errors = format!("stresslet {:.1e}", answer.stresslet_error_estimate);
-        if let (Some(power), Some(error)) = (answer.power, answer.power_error_estimate) {
+        if let Some(power) = answer.power {
             let number = number(power);
             writeln!(out, "{:>6}  {:width$}  {:16}  {number}", "", "", "power")?;
+        }
+        let mut errors = format!("stresslet {:.1e}", answer.stresslet_error_estimate);
+        if let Some(error) = answer.power_error_estimate {
             errors += &format!(", power {error:.1e}");
         }
         writeln!(
@@ -114,6 +137,54 @@ fn write_bodies(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
         )?;
     }
     Ok(())
+}
+
+/// The slowest, the fastest and the mean, and so on.
+fn write_summary(out: &mut String, report: &Report) -> fmt::Result {
+    let bodies = &report.bodies;
+    writeln!(
+        out,
+        "\n{} bodies (--all shows each, --json all numbers); magnitudes, with the number of the body",
+        bodies.len()
+    )?;
+    writeln!(
+        out,
+        "{:16}  {:>20}  {:>6}  {:>20}  {:>6}  {:>20}",
+        "quantity", "smallest", "body", "largest", "body", "mean"
+    )?;
+    let norm = |v: &[f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let rows: [(&str, &dyn Fn(&BodyReport) -> f64); 4] = [
+        ("velocity", &|body| norm(&body.velocity)),
+        ("angular velocity", &|body| norm(&body.angular_velocity)),
+        ("force", &|body| norm(&body.force)),
+        ("torque", &|body| norm(&body.torque)),
+    ];
+    for (quantity, magnitude) in rows {
+        let values: Vec<f64> = bodies.iter().map(magnitude).collect();
+        let order = |&i: &usize, &j: &usize| values[i].total_cmp(&values[j]).then(j.cmp(&i));
+        let [least, most] = [
+            (0..values.len()).min_by(order),
+            (0..values.len()).max_by(order),
+        ]
+        .map(Option::unwrap_or_default);
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        writeln!(
+            out,
+            "{quantity:16}  {}  {:>6}  {}  {:>6}  {}",
+            number(values[least]),
+            least + 1,
+            number(values[most]),
+            most + 1,
+            number(mean)
+        )?;
+    }
+    let mean = |vector: &dyn Fn(&BodyReport) -> [f64; 3]| {
+        let part = |j: usize| bodies.iter().map(|body| vector(body)[j]).sum::<f64>();
+        [0, 1, 2].map(|j| part(j) / bodies.len() as f64)
+    };
+    let [velocity, force] = [mean(&|body| body.velocity), mean(&|body| body.force)];
+    writeln!(out, "mean velocity     {}", numbers(&velocity))?;
+    writeln!(out, "mean force        {}", numbers(&force))
 }
 
 fn write_probes(out: &mut String, probes: &[ProbeReport], pressure_error: f64) -> fmt::Result {
@@ -142,16 +213,28 @@ fn write_probes(out: &mut String, probes: &[ProbeReport], pressure_error: f64) -
 fn write_discretization(out: &mut String, shapes: &[Discretization]) -> fmt::Result {
     let widest = shapes.iter().map(|d| d.shape.chars().count());
     let width = widest.max().unwrap_or(0).max("shape".len());
+    // Of one body there is nothing to count.
+    let counts = shapes
+        .iter()
+        .any(|d| d.bodies.is_some_and(|bodies| bodies > 1))
+        || shapes.len() > 1;
+    let head = if counts { "  bodies" } else { "" };
     writeln!(
         out,
-        "\n  {:width$}  {:>6}  {:>5}  {:>5}",
+        "\n  {:width$}  {:>6}  {:>5}  {:>5}{head}",
         "shape", "panels", "order", "modes"
     )?;
     for d in shapes {
+        let count = d.bodies.filter(|_| counts);
+        let count = count.map(|bodies| format!("  {bodies:>6}"));
         writeln!(
             out,
-            "  {:width$}  {:>6}  {:>5}  {:>5}",
-            d.shape, d.panels, d.order, d.modes
+            "  {:width$}  {:>6}  {:>5}  {:>5}{}",
+            d.shape,
+            d.panels,
+            d.order,
+            d.modes,
+            count.unwrap_or_default()
         )?;
     }
     Ok(())
@@ -175,7 +258,6 @@ pub(super) fn number(x: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::BodyReport;
 
     #[test]
     fn columns_are_aligned() {
@@ -190,7 +272,7 @@ mod tests {
             error_estimate: 2e-7,
             ..Report::default()
         };
-        let text = table(&case, &report);
+        let text = table(&case, &report, false);
         assert!(text.contains("MISSES the tolerance 1e-8"));
         let lines: Vec<&str> = text.lines().collect();
         let header = lines.iter().position(|l| l.contains("quantity")).unwrap();

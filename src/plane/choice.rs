@@ -1,6 +1,8 @@
 //! The plane of a case: as `[plane]` asks, and where it leaves things open the plane in which most is to be seen.
 
-use nalgebra::{Point3, Unit, Vector3};
+use std::cmp::Ordering;
+
+use nalgebra::{Matrix3, Point3, Unit, Vector3};
 
 use super::Plane;
 use crate::case::{Background, Body, Case, Motion, Orientation};
@@ -11,31 +13,172 @@ const EXTENT: f64 = 3.5;
 const POINTS: usize = 201;
 /// Directions that are nearer than this to each other, as a sine, count as the same.
 const PARALLEL: f64 = 1e-9;
+/// Largest ratio of width and height around many bodies.
+const SLIMMEST: f64 = 4.0;
+/// What directions differ by in how they are liked, as a part of the spread of the centres.
+const LIKING: f64 = 1e-6;
 
 impl Plane {
-    /// The plane of a case whose first body is `length` long.
+    /// The plane of a case with bodies of these sizes, half their largest extents.
     ///
-    /// Where `[plane]` leaves it open: through the body's centre; containing its symmetry axis and whatever acts across the axis, be it
+    /// Where `[plane]` leaves it open, of one body: through its centre; containing its symmetry axis and whatever acts across the axis, be it
     /// velocity, force or background flow, or else orthogonal to what turns the body; square, 3.5 lengths wide, with 201 x 201 points.
     /// Upwards is z as far as possible, or else y.
-    pub fn of_case(case: &Case, length: f64) -> Self {
+    ///
+    /// Of many: containing the direction that most bodies are moved or pushed along, or the background flow, and from it the longest extent of their centres;
+    /// through the centre of all, moved across itself to the nearest centre of a body; as large as all of them with a margin of the largest one's length.
+    pub fn of_case(case: &Case, sizes: &[f64]) -> Self {
         let options = &case.plane;
-        let body = &case.bodies[0];
+        let chosen = || match &case.bodies[..] {
+            [body] => normal(case, body),
+            _ => normal_of_many(case),
+        };
         let (across, up) = match options.orientation {
             Some(Orientation::Directions { across, up }) => (
                 Unit::new_normalize(across.into()),
                 Unit::new_normalize(up.into()),
             ),
             Some(Orientation::Normal(normal)) => directions(Unit::new_normalize(normal.into())),
-            None => directions(normal(case, body)),
+            None => directions(chosen()),
+        };
+        let (center, size, points) = match &case.bodies[..] {
+            [body] => {
+                let length = 2.0 * sizes.first().copied().unwrap_or(1.0);
+                (body.center.into(), [EXTENT * length; 2], [POINTS; 2])
+            }
+            bodies => around(bodies, sizes, [across, up]),
         };
         Self {
-            center: Point3::from(options.center.unwrap_or(body.center)),
+            center: options.center.map_or(center, Point3::from),
             across,
             up,
-            size: options.size.unwrap_or([EXTENT * length; 2]),
-            points: options.points.unwrap_or([POINTS; 2]),
+            size: options.size.unwrap_or(size),
+            points: options.points.unwrap_or(match options.size {
+                Some(_) => [POINTS; 2],
+                None => points,
+            }),
         }
+    }
+}
+
+/// Middle, size and grid of a rectangle along two directions around many bodies.
+fn around(
+    bodies: &[Body],
+    sizes: &[f64],
+    [across, up]: [Unit<Vector3<f64>>; 2],
+) -> (Point3<f64>, [f64; 2], [usize; 2]) {
+    let normal = across.cross(&up);
+    let largest = sizes.iter().copied().fold(0.0, f64::max);
+    // From where to where all bodies are, along each direction.
+    let [width, height, depth] = [*across, *up, normal].map(|direction| {
+        let along = bodies.iter().zip(sizes).map(|(body, size)| {
+            let center = Vector3::from(body.center).dot(&direction);
+            [center - size, center + size]
+        });
+        along.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [from, to]| {
+            [a.min(from), b.max(to)]
+        })
+    });
+    let middle = |[from, to]: [f64; 2]| 0.5 * (from + to);
+    let depths = bodies
+        .iter()
+        .map(|body| Vector3::from(body.center).dot(&normal));
+    let nearest = depths.min_by(|a, b| {
+        let [a, b] = [a, b].map(|depth_of_body| (depth_of_body - middle(depth)).abs());
+        // Of two as far on either side the first one, whatever rounding says.
+        if (a - b).abs() <= PARALLEL * largest {
+            Ordering::Equal
+        } else {
+            a.total_cmp(&b)
+        }
+    });
+    let center = *across * middle(width) + *up * middle(height) + normal * nearest.unwrap_or(0.0);
+    let size = [width, height].map(|[from, to]| to - from + 4.0 * largest);
+    let longest = size[0].max(size[1]);
+    let size = size.map(|length| length.max(longest / SLIMMEST));
+    let points = size.map(|length| (POINTS as f64 * length / longest).round() as usize);
+    (center.into(), size, points)
+}
+
+/// The normal of the plane in which the flow around many bodies is best seen.
+fn normal_of_many(case: &Case) -> Unit<Vector3<f64>> {
+    let background = background(case);
+    let acting: Vec<Vector3<f64>> = case.bodies.iter().map(|body| acting(body)[0]).collect();
+    let mean = acting.iter().sum::<Vector3<f64>>() / acting.len() as f64;
+    let largest = acting
+        .iter()
+        .copied()
+        .max_by(|a, b| a.norm().total_cmp(&b.norm()));
+    let largest = largest.unwrap_or_default();
+    // Forces that cancel still act.
+    let mean = if mean.norm() > PARALLEL * largest.norm() {
+        mean
+    } else {
+        largest
+    };
+    let mut straight = std::iter::once(mean)
+        .chain(background)
+        .filter(|v| *v != Vector3::zeros());
+    let first = straight.next().map(Unit::new_normalize);
+    if let Some(first) = first {
+        let across = |v: Vector3<f64>| {
+            let off = v - *first * first.dot(&v);
+            (off.norm() > PARALLEL * v.norm()).then_some(off)
+        };
+        if let Some(off) = straight.find_map(across) {
+            return Unit::new_normalize(first.cross(&off));
+        }
+    }
+    flattest(case, first)
+}
+
+/// The direction, orthogonal to another if there is one, along which the centres are spread least; of directions that are as good, one that leaves
+/// z and x in the plane.
+fn flattest(case: &Case, orthogonal: Option<Unit<Vector3<f64>>>) -> Unit<Vector3<f64>> {
+    let centers: Vec<Vector3<f64>> = case.bodies.iter().map(|b| b.center.into()).collect();
+    let middle = centers.iter().sum::<Vector3<f64>>() / centers.len() as f64;
+    let project = |v: Vector3<f64>| match orthogonal {
+        Some(n) => v - *n * n.dot(&v),
+        None => v,
+    };
+    let spread: Matrix3<f64> = centers
+        .iter()
+        .map(|c| (c - middle) * (c - middle).transpose())
+        .sum();
+    let scale = spread.trace().max(f64::MIN_POSITIVE);
+    // A little is added where a direction is liked less, and much along the one that is ruled out.
+    let liking = Matrix3::from_diagonal(&Vector3::new(2.0, 0.0, 1.0)) * (LIKING * scale);
+    let mut total = spread + liking;
+    if let Some(n) = orthogonal {
+        let projector = Matrix3::identity() - *n * n.transpose();
+        total = projector * total * projector + *n * n.transpose() * (4.0 * scale);
+    }
+    let eigen = total.symmetric_eigen();
+    let least = eigen.eigenvalues.imin();
+    let direction = project(eigen.eigenvectors.column(least).into_owned());
+    let sign = direction[direction.iamax()].signum();
+    Unit::new_normalize(sign * direction)
+}
+
+/// Velocity or force of a body, and what turns it.
+fn acting(body: &Body) -> [Vector3<f64>; 2] {
+    match body.motion.value {
+        Motion::Rigid {
+            velocity,
+            angular_velocity,
+        } => [velocity, angular_velocity].map(Into::into),
+        Motion::Free { force, torque } => [force, torque].map(Into::into),
+    }
+}
+
+/// Directions of the undisturbed flow.
+fn background(case: &Case) -> Vec<Vector3<f64>> {
+    match case.background.as_deref() {
+        Some(Background::Uniform { velocity }) => vec![Vector3::from(*velocity)],
+        Some(Background::Shear { flow, gradient, .. }) => {
+            vec![Vector3::from(*flow), Vector3::from(*gradient)]
+        }
+        _ => Vec::new(),
     }
 }
 
@@ -46,25 +189,12 @@ fn normal(case: &Case, body: &Body) -> Unit<Vector3<f64>> {
         let off = v - axis * axis.dot(&v);
         (off.norm() > PARALLEL * v.norm()).then_some(off)
     };
-    let (acting, turning) = match body.motion.value {
-        Motion::Rigid {
-            velocity,
-            angular_velocity,
-        } => (velocity, angular_velocity),
-        Motion::Free { force, torque } => (force, torque),
-    };
-    let background: Vec<Vector3<f64>> = match case.background.as_deref() {
-        Some(Background::Uniform { velocity }) => vec![Vector3::from(*velocity)],
-        Some(Background::Shear { flow, gradient, .. }) => {
-            vec![Vector3::from(*flow), Vector3::from(*gradient)]
-        }
-        _ => Vec::new(),
-    };
-    let straight = std::iter::once(Vector3::from(acting)).chain(background.iter().copied());
+    let [acting, turning] = acting(body);
+    let background = background(case);
+    let straight = std::iter::once(acting).chain(background.iter().copied());
     if let Some(off) = straight.clone().find_map(across) {
         return Unit::new_normalize(axis.cross(&off));
     }
-    let turning = Vector3::from(turning);
     if let Some(off) = across(turning) {
         return Unit::new_normalize(off);
     }
@@ -104,7 +234,7 @@ mod tests {
             "[shapes.rod]\nkind = 'spheroid'\npolar = 1\nequatorial = 0.5\n[[bodies]]\nshape = 'rod'\n{body}\n{case}"
         );
         let case = Case::parse(&text, "rod.toml").unwrap();
-        Plane::of_case(&case, 2.0)
+        Plane::of_case(&case, &[1.0])
     }
 
     fn along(plane: &Plane, axes: [Vector3<f64>; 2]) {
@@ -152,5 +282,45 @@ mod tests {
             &plane("", "[plane]\nacross = [0, 0, 2]\nup = [-1, 0, 0]"),
             [z, -x],
         );
+    }
+
+    /// The plane of unit spheres at these centres, each with these lines.
+    fn of_many(bodies: &[([f64; 3], &str)], case: &str) -> Plane {
+        let mut text = format!("[shapes.ball]\nkind = 'sphere'\nradius = 1\n{case}\n");
+        for (center, lines) in bodies {
+            text += &format!("[[bodies]]\nshape = 'ball'\ncenter = {center:?}\n{lines}\n");
+        }
+        let case = Case::parse(&text, "many.toml").unwrap();
+        Plane::of_case(&case, &vec![1.0; bodies.len()])
+    }
+
+    #[test]
+    fn of_many_bodies_shows_them_and_what_acts() {
+        let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()];
+        let down = "force = [0, 0, -1]";
+        // Side by side along y, sinking.
+        let pair = of_many(&[([0.0, 0.0, 1.0], down), ([0.0, 4.0, 1.0], down)], "");
+        along(&pair, [y, z]);
+        assert!((pair.center - Point3::new(0.0, 2.0, 1.0)).norm() < 1e-14);
+        assert!((pair.size[0] - 10.0).abs() < 1e-14 && (pair.size[1] - 6.0).abs() < 1e-14);
+        assert_eq!(pair.points, [201, 121]);
+        // Pushed together: forces that cancel still give a direction, and nothing else does.
+        let [up, back] = ["velocity = [0, 0, 1]", "velocity = [0, 0, -1]"];
+        let pushed = of_many(&[([0.0, 0.0, -1.05], up), ([0.0, 0.0, 1.05], back)], "");
+        along(&pushed, [x, z]);
+        // A cube: the plane passes through a layer of bodies, not between two.
+        let corners = (0..8).map(|k| [k & 1, k >> 1 & 1, k >> 2].map(|bit| 3.0 * f64::from(bit)));
+        let cube: Vec<_> = corners.map(|corner| (corner, down)).collect();
+        let cube = of_many(&cube, "");
+        along(&cube, [x, z]);
+        assert!(
+            (cube.center - Point3::new(1.5, 0.0, 1.5)).norm() < 1e-14,
+            "{cube:?}"
+        );
+        // In a shear flow, the plane of shear.
+        let shear =
+            "[background]\nkind = 'shear'\nrate = 1\nflow = [0, 0, 1]\ngradient = [0, 1, 0]";
+        let sheared = of_many(&[([0.0; 3], ""), ([3.0, 0.0, 0.0], "")], shear);
+        along(&sheared, [y, z]);
     }
 }

@@ -22,7 +22,7 @@ impl Solved {
     pub fn sections(&self, plane: &Plane) -> Result<Vec<Vec<[f64; 2]>>, CurveError> {
         let mut sections = Vec::new();
         for body in &self.bodies {
-            let curve = body.flow().discretization.curve();
+            let curve = body.discretization().curve();
             sections.extend(section(&**curve, body.frame(), plane)?);
         }
         Ok(sections)

@@ -2,7 +2,7 @@
 //!
 //! | file | grid | point data |
 //! |---|---|---|
-//! | surface, `.vtu` | quadrilaterals between rings, triangles at the poles; closed, normals outward | `traction`, `velocity`, `normal` |
+//! | surfaces of all bodies, `.vtu` | quadrilaterals between rings, triangles at the poles; closed, normals outward | `traction`, `velocity`, `normal`, `body` (its number) |
 //! | plane, `.vts` | structured, as in [`Plane`](crate::plane::Plane) | `velocity`, `pressure`, `inside`, `vtkGhostType` |
 //!
 //! Inside a body velocity and pressure are NaN, `inside` is 1, and `vtkGhostType` is 2 (hidden point), by which ParaView blanks the points.

@@ -1,59 +1,76 @@
-//! The surface of a body.
+//! The surfaces of the bodies.
 
 use std::f64::consts::PI;
 
 use nalgebra::{Point3, Vector3};
 use panel_quadrature::QuadratureError;
 use vtkio::model::{
-    Attributes, CellType, Cells, DataSet, Piece, UnstructuredGridPiece, VertexNumbers,
+    Attribute, Attributes, CellType, Cells, DataArray, DataSet, Piece, UnstructuredGridPiece,
+    VertexNumbers,
 };
 
 use super::{VtkError, bytes, flat, vectors};
 use crate::body::discretization::Discretization;
 use crate::body::surface::SurfaceModes;
 use crate::curve::Topology;
-use crate::solve::SolvedBody;
+use crate::progress::Progress;
+use crate::solve::{SolveError, Solved, SolvedBody};
 
-/// A body's surface as a closed mesh with what acts on it, in the laboratory.
-#[derive(Clone, Debug)]
+/// The surfaces of all bodies as closed meshes with what acts on them, in the laboratory.
+#[derive(Clone, Debug, Default)]
 pub struct Surface {
-    /// The vertices: the nodes of the generating curve, each turned to the azimuths in equal steps; then the poles, upper and lower.
+    /// The vertices, body after body: the nodes of the generating curve, each turned to the azimuths in equal steps; then the poles, upper and lower.
     pub points: Vec<Point3<f64>>,
     /// Outward unit normals of the surface itself.
     pub normals: Vec<Vector3<f64>>,
     /// Velocities of the surface, and of the fluid there.
     pub velocity: Vec<Vector3<f64>>,
-    /// Force per area that the fluid exerts on the body.
+    /// Force per area that the fluid exerts on the body, of the whole flow.
     pub traction: Vec<Vector3<f64>>,
+    /// The number of each vertex's body, from 1, in the order of the case.
+    pub body: Vec<u32>,
     /// Vertices of each cell, four or three, counterclockwise seen from outside.
     pub cells: Vec<Vec<u64>>,
 }
 
 impl Surface {
-    /// The surface of a body, with so many azimuths.
+    /// The surfaces of all bodies, each with so many azimuths.
     ///
     /// # Errors
-    /// If a quadrature rule is missing.
-    pub fn of(body: &SolvedBody, azimuths: usize) -> Result<Self, QuadratureError> {
-        let flow = body.flow();
-        let nodes = &flow.discretization;
-        let traction = flow.traction()?;
-        let velocity = flow.surface_velocity();
-        let mut surface = Self {
-            points: Vec::new(),
-            normals: Vec::new(),
-            velocity: Vec::new(),
-            traction: Vec::new(),
-            cells: Vec::new(),
-        };
-        // Everything in the body's frame, and for viscosity 1.
+    /// If a quadrature rule is missing, or whoever waits has lost interest.
+    pub fn of(
+        solved: &Solved,
+        azimuths: impl Fn(&SolvedBody) -> usize,
+        progress: &dyn Progress,
+    ) -> Result<Self, SolveError> {
+        let tractions = solved.tractions(progress)?;
+        let mut surface = Self::default();
+        for (number, (body, traction)) in (1..).zip(solved.bodies.iter().zip(&tractions)) {
+            surface
+                .add(body, number, traction, azimuths(body))
+                .map_err(|error| SolveError::Failed(error.to_string()))?;
+        }
+        Ok(surface)
+    }
+
+    fn add(
+        &mut self,
+        body: &SolvedBody,
+        number: u32,
+        traction: &SurfaceModes,
+        azimuths: usize,
+    ) -> Result<(), QuadratureError> {
+        let (nodes, frame) = (body.discretization(), body.frame());
+        let velocity = body.surface_velocity();
+        let first = self.points.len();
+        // All four in the body's frame.
         let mut add = |at: [Vector3<f64>; 4]| {
             let [point, normal, velocity, traction] = at;
-            let lab = |v: Vector3<f64>| body.frame().vector_to_lab(v);
-            surface.points.push(body.frame().point_to_lab(point.into()));
-            surface.normals.push(lab(normal));
-            surface.velocity.push(lab(velocity));
-            surface.traction.push(lab(body.viscosity() * traction));
+            self.points.push(frame.point_to_lab(point.into()));
+            self.normals.push(frame.vector_to_lab(normal));
+            self.velocity.push(frame.vector_to_lab(velocity));
+            self.traction.push(frame.vector_to_lab(traction));
+            self.body.push(number);
         };
         for (k, node) in nodes.nodes().iter().enumerate() {
             for l in 0..azimuths {
@@ -75,13 +92,17 @@ impl Surface {
                 add([
                     pole.point(nodes),
                     pole.normal(),
-                    pole.value(nodes, &velocity)?,
-                    pole.value(nodes, &traction)?,
+                    pole.value(nodes, velocity)?,
+                    pole.value(nodes, traction)?,
                 ]);
             }
         }
-        surface.cells = cells(nodes.nodes().len(), azimuths, poles);
-        Ok(surface)
+        let mut cells = cells(nodes.nodes().len(), azimuths, poles);
+        for vertex in cells.iter_mut().flatten() {
+            *vertex += first as u64;
+        }
+        self.cells.append(&mut cells);
+        Ok(())
     }
 
     /// The `.vtu` file.
@@ -113,6 +134,7 @@ impl Surface {
                     vectors("traction", &self.traction),
                     vectors("velocity", &self.velocity),
                     vectors("normal", &self.normals),
+                    Attribute::DataArray(DataArray::scalars("body", 1).with_vec(self.body.clone())),
                 ],
                 cell: Vec::new(),
             },
@@ -121,7 +143,7 @@ impl Surface {
             meta: None,
             pieces: vec![Piece::Inline(Box::new(piece))],
         };
-        bytes("surface of a body", data)
+        bytes("surfaces of the bodies", data)
     }
 }
 

@@ -19,7 +19,9 @@ fn pair(distance: f64) -> Suspension<'static> {
 
 /// The error and its message.
 fn refused(result: Result<Answer, SuspensionError>) -> (SuspensionError, String) {
-    let error = result.expect_err("an error");
+    let Err(error) = result else {
+        panic!("an answer instead of an error");
+    };
     let message = error.to_string();
     println!("{message}");
     (error, message)

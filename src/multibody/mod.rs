@@ -65,6 +65,22 @@ pub enum SuspensionError {
         /// Why it ended.
         stop: Stop,
     },
+    /// There is not one resolution for each body.
+    #[error("{resolutions} resolutions for {bodies} bodies: expected one for each")]
+    Resolutions {
+        /// How many were given.
+        resolutions: usize,
+        /// How many there should be.
+        bodies: usize,
+    },
+    /// The force or torque on a body is not finite.
+    #[error("force and torque on body {body} must be finite, got {value}")]
+    Wrench {
+        /// Which body.
+        body: usize,
+        /// A component that is not.
+        value: f64,
+    },
     /// The velocity imposed on a body is not finite.
     #[error("the velocity imposed on body {body} is not finite everywhere")]
     Velocity {

@@ -236,6 +236,12 @@ impl<'a> Suspension<'a> {
         progress: &dyn Progress,
     ) -> Result<Answer, SuspensionError> {
         let begin = Instant::now();
+        if resolutions.len() != self.bodies.len() {
+            return Err(SuspensionError::Resolutions {
+                resolutions: resolutions.len(),
+                bodies: self.bodies.len(),
+            });
+        }
         self.gaps(0.0, progress)?;
         let kinds = self.kinds(resolutions)?;
         self.check_memory(&kinds, "panels, order and modes by hand")?;
@@ -369,7 +375,21 @@ impl<'a> Suspension<'a> {
             .collect();
         let gaps = gaps(&placed)?;
         gaps.iter().try_for_each(|gap| gap.check(0.0))?;
+        self.check_wrenches()?;
         Ok(gaps)
+    }
+
+    fn check_wrenches(&self) -> Result<(), SuspensionError> {
+        for (index, body) in self.bodies.iter().enumerate() {
+            let Motion::Free(Wrench { force, torque }) = body.motion else {
+                continue;
+            };
+            let mut components = force.iter().chain(torque.iter());
+            if let Some(&value) = components.find(|x| !x.is_finite()) {
+                return Err(SuspensionError::Wrench { body: index, value });
+            }
+        }
+        Ok(())
     }
 
     /// Bytes that everything may take.

@@ -1,0 +1,116 @@
+//! Grand matrices of random clusters: symmetric, positive, and the same in any frame and units.
+
+use axistokes::multibody::contact::{Placed, gaps};
+use axistokes::{Body, Frame, Silent, Suspension};
+use nalgebra::{DMatrix, Point3, Rotation3, Unit, Vector3};
+
+use super::common::{Curve, apart, asymmetry, direction, random, spheroid};
+
+/// Bodies of three shapes and different scales, more than 0.2 apart.
+fn cluster(seed: u64) -> Suspension<'static> {
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let curves: [Curve; 3] = [spheroid(1.0, 1.0), spheroid(1.0, 0.5), spheroid(0.6, 1.0)];
+    let count = rng.usize(3..=5);
+    let mut bodies: Vec<Body<'static>> = Vec::new();
+    while bodies.len() < count {
+        let center = Point3::from(4.0 * random(&mut rng));
+        let frame = Frame::new(center, direction(&mut rng)).scaled(0.5 + rng.f64());
+        bodies.push(Body::new(curves[rng.usize(0..3)].clone(), frame));
+        let placed: Vec<Placed<'_>> = (bodies.iter())
+            .map(|body| Placed {
+                curve: &*body.curve,
+                frame: body.frame,
+                reach: 0.2,
+            })
+            .collect();
+        if !gaps(&placed)
+            .expect("gaps")
+            .iter()
+            .all(|gap| gap.distance > 0.2)
+        {
+            bodies.pop();
+        }
+    }
+    Suspension::new(bodies)
+}
+
+/// The figures of one cluster.
+fn check(seed: u64) {
+    let cluster = cluster(seed);
+    let begin = std::time::Instant::now();
+    let found = cluster.grand_mobility(1e-9, &Silent).expect("a matrix");
+    let asymmetry = asymmetry(&found.matrix);
+    let least = (0.5 * (&found.matrix + found.matrix.transpose()))
+        .symmetric_eigenvalues()
+        .min();
+    println!(
+        "cluster {seed}, {} bodies: asymmetry {asymmetry:.1e}, estimate {:.1e}, least eigenvalue {least:.2e} of {:.2e}, {:.1} s",
+        cluster.bodies.len(),
+        found.error_estimate,
+        found.matrix.amax(),
+        begin.elapsed().as_secs_f64()
+    );
+    assert!(found.error_estimate <= 1e-9 && asymmetry <= 1e-9 && least > 0.0);
+}
+
+#[test]
+fn have_symmetric_positive_mobilities() {
+    (0..4).for_each(check);
+}
+
+#[test]
+#[ignore = "minutes"]
+fn all_have_symmetric_positive_mobilities() {
+    (0..20).for_each(check);
+}
+
+#[test]
+fn look_the_same_from_any_side() {
+    let mut rng = fastrand::Rng::with_seed(7);
+    let cluster = cluster(2);
+    let rotation = Rotation3::from_axis_angle(&direction(&mut rng), 2.0);
+    let shift = 10.0 * random(&mut rng);
+    let moved = |place: &dyn Fn(&Frame) -> Frame| {
+        let mut moved = cluster.clone();
+        for body in &mut moved.bodies {
+            body.frame = place(&body.frame);
+        }
+        moved
+    };
+    let turned = moved(&|frame| {
+        let center = rotation * frame.center() + shift;
+        let axis = Unit::new_normalize(rotation * frame.axis().into_inner());
+        Frame::new(center, axis).scaled(frame.scale())
+    });
+    let enlarged =
+        moved(&|frame| Frame::new(3.0 * frame.center(), frame.axis()).scaled(3.0 * frame.scale()));
+    let count = 6 * cluster.bodies.len();
+    let turn = DMatrix::from_fn(count, count, |i, j| {
+        if i / 3 == j / 3 {
+            rotation[(i % 3, j % 3)]
+        } else {
+            0.0
+        }
+    });
+    // Forces per velocity are a length, torques per velocity an area, torques per angular velocity a volume.
+    let power = |i: usize, j: usize| 1 + (i / 3 % 2) as i32 + (j / 3 % 2) as i32;
+    let lengths = DMatrix::from_fn(count, count, |i, j| 3f64.powi(power(i, j)));
+    let _ = Vector3::<f64>::zeros();
+    let resistance =
+        |s: &Suspension<'_>| s.grand_resistance(1e-9, &Silent).expect("a matrix").matrix;
+    let [own, of_turned, of_enlarged] = [&cluster, &turned, &enlarged].map(resistance);
+    println!(
+        "resistance: turned {:.1e}, enlarged {:.1e}, asymmetry {:.1e}",
+        apart(&of_turned, &(&turn * &own * turn.transpose())),
+        apart(&of_enlarged.component_div(&lengths), &own),
+        asymmetry(&own)
+    );
+    let mobility = |s: &Suspension<'_>| s.grand_mobility(1e-9, &Silent).expect("a matrix").matrix;
+    let [own_m, of_turned, of_enlarged] = [&cluster, &turned, &enlarged].map(mobility);
+    println!(
+        "mobility: turned {:.1e}, enlarged {:.1e}, R M - 1 {:.1e}",
+        apart(&of_turned, &(&turn * &own_m * turn.transpose())),
+        apart(&of_enlarged.component_mul(&lengths), &own_m),
+        (own * own_m - DMatrix::identity(count, count)).amax()
+    );
+}

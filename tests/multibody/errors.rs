@@ -1,0 +1,255 @@
+//! What cannot be answered is refused with an error that says why.
+
+use axistokes::body::linear_flow::LinearFlow;
+use axistokes::multibody::SuspensionError;
+use axistokes::multibody::contact::ContactError;
+use axistokes::multibody::suspension::Answer;
+use axistokes::{Body, Frame, Motion, Progress, Silent, Suspension, Wrench};
+use nalgebra::{Point3, Unit, Vector3};
+
+use super::common::{at, ball, moving, spheroid};
+
+fn pair(distance: f64) -> Suspension<'static> {
+    Suspension::new(
+        [0.0, distance]
+            .map(|z| Body::new(ball(), at(0.0, 0.0, z)))
+            .to_vec(),
+    )
+}
+
+/// The error and its message.
+fn refused(result: Result<Answer, SuspensionError>) -> (SuspensionError, String) {
+    let Err(error) = result else {
+        panic!("an answer instead of an error");
+    };
+    let message = error.to_string();
+    println!("{message}");
+    (error, message)
+}
+
+fn of(suspension: &Suspension<'_>) -> (SuspensionError, String) {
+    refused(suspension.to_tolerance(1e-6, &Silent))
+}
+
+#[test]
+fn no_bodies() {
+    let (error, _) = of(&Suspension::new(Vec::new()));
+    assert!(matches!(error, SuspensionError::Empty));
+    let none = Suspension::new(Vec::new());
+    assert!(matches!(
+        none.grand_mobility(1e-6, &Silent),
+        Err(SuspensionError::Empty)
+    ));
+    assert!(matches!(
+        none.at_resolutions(&[], 1e-6, &Silent),
+        Err(SuspensionError::Empty)
+    ));
+}
+
+#[test]
+fn places() {
+    let (error, _) = of(&pair(1.5));
+    assert!(matches!(
+        error,
+        SuspensionError::Contact(ContactError::Overlap {
+            first: 0,
+            second: 1,
+            ..
+        })
+    ));
+    let (error, _) = of(&pair(2.0));
+    assert!(matches!(
+        error,
+        SuspensionError::Contact(ContactError::Touch {
+            first: 0,
+            second: 1
+        })
+    ));
+    let mut inside = pair(0.1);
+    inside.bodies[1].frame = inside.bodies[1].frame.scaled(0.2);
+    let (error, _) = of(&inside);
+    assert!(matches!(
+        error,
+        SuspensionError::Contact(ContactError::Inside { inner: 1, outer: 0 })
+    ));
+    for (frame, _what) in [
+        (at(0.0, f64::NAN, 5.0), "center"),
+        (at(0.0, f64::INFINITY, 5.0), "center"),
+        (at(0.0, 0.0, 5.0).scaled(-1.0), "scale"),
+        (at(0.0, 0.0, 5.0).scaled(f64::NAN), "scale"),
+        (
+            Frame::new(
+                Point3::new(0.0, 0.0, 5.0),
+                Unit::new_unchecked(Vector3::repeat(f64::NAN)),
+            ),
+            "axis",
+        ),
+        (
+            Frame::new(
+                Point3::new(0.0, 0.0, 5.0),
+                Unit::new_unchecked(Vector3::zeros()),
+            ),
+            "axis",
+        ),
+    ] {
+        let mut wrong = pair(3.0);
+        wrong.bodies[1].frame = frame;
+        let (error, _) = of(&wrong);
+        assert!(matches!(
+            error,
+            SuspensionError::Contact(ContactError::Place { body: 1, .. })
+        ));
+    }
+}
+
+#[test]
+fn velocities_that_are_not_finite() {
+    let nan = Vector3::new(0.0, f64::NAN, 0.0);
+    let rest = Vector3::zeros();
+    let slip = |x: Vector3<f64>| if x.z > 0.9 { nan } else { Vector3::x() };
+    let mut wrong = pair(3.0);
+    wrong.bodies[1].slip = Some(&slip);
+    let (error, _) = of(&wrong);
+    assert!(matches!(error, SuspensionError::Velocity { body: 1 }));
+    for motion in [
+        moving(nan, rest),
+        moving(rest, nan),
+        moving(f64::INFINITY * Vector3::x(), rest),
+    ] {
+        let mut wrong = pair(3.0);
+        wrong.bodies[1].motion = motion;
+        let (error, _) = of(&wrong);
+        assert!(matches!(error, SuspensionError::Velocity { body: 1 }));
+    }
+    let mut wrong = pair(3.0);
+    wrong.background = LinearFlow::uniform(nan);
+    let (error, _) = of(&wrong);
+    assert!(matches!(error, SuspensionError::Velocity { body: 0 }));
+}
+
+#[test]
+fn forces_that_are_not_finite() {
+    for wrench in [
+        Wrench {
+            force: f64::NAN * Vector3::x(),
+            torque: Vector3::zeros(),
+        },
+        Wrench {
+            force: Vector3::zeros(),
+            torque: f64::INFINITY * Vector3::x(),
+        },
+    ] {
+        let mut wrong = pair(3.0);
+        wrong.bodies[1].motion = Motion::Free(wrench);
+        let (_error, _) = of(&wrong);
+    }
+}
+
+#[test]
+fn targets_that_are_not_finite() {
+    let targets = [Point3::new(0.0, 0.0, 10.0), Point3::new(0.0, f64::NAN, 0.0)];
+    let wrong = Suspension {
+        targets: &targets,
+        ..pair(3.0)
+    };
+    let (error, _) = of(&wrong);
+    assert!(matches!(
+        error,
+        SuspensionError::Flow(axistokes::FlowError::NotFinite { index: 1 })
+    ));
+}
+
+#[test]
+fn memory() {
+    let mut wrong = pair(3.0);
+    wrong.options.memory = Some(1000);
+    let (error, _) = of(&wrong);
+    assert!(matches!(error, SuspensionError::Memory { .. }));
+}
+
+fn moved() -> Suspension<'static> {
+    let mut pair = pair(2.5);
+    pair.bodies[0].motion = moving(Vector3::new(1.0, 2.0, 3.0), Vector3::x());
+    pair.bodies[1].curve = spheroid(1.0, 0.6);
+    pair.bodies[1].frame = Frame::new(
+        Point3::new(0.0, 0.3, 2.5),
+        Unit::new_normalize(Vector3::new(1.0, 2.0, 0.5)),
+    );
+    pair
+}
+
+#[test]
+fn iterations_that_end_too_soon() {
+    let mut pair = moved();
+    pair.options.max_iterations = 2;
+    let (error, _) = of(&pair);
+    assert!(matches!(
+        error,
+        SuspensionError::NotConverged { iterations: 2, .. }
+    ));
+    pair.options.max_iterations = 0;
+    let (_error, _) = of(&pair);
+    pair.options.max_iterations = 100;
+    pair.options.method = axistokes::krylov::Method::Gmres { restart: 0 };
+    let (_error, _) = of(&pair);
+}
+
+#[test]
+fn tolerances_out_of_range() {
+    for tolerance in [0.0, -1.0, f64::NAN, 2.0, f64::INFINITY] {
+        let pair = moved();
+        match pair.to_tolerance(tolerance, &Silent) {
+            Ok(answer) => println!(
+                "tolerance {tolerance}: estimate {:.1e}, {} points",
+                answer.error_estimate, answer.points
+            ),
+            Err(error) => println!("tolerance {tolerance}: {error}"),
+        }
+    }
+}
+
+#[test]
+fn resolutions_that_are_too_few() {
+    let pair = moved();
+    let answer = pair.to_tolerance(1e-3, &Silent).expect("an answer");
+    let one = std::sync::Arc::new(answer.bodies[0].resolution.clone());
+    let (_error, _) = refused(pair.at_resolutions(&[one], 1e-3, &Silent));
+}
+
+#[test]
+fn an_interior_formulation() {
+    let mut pair = moved();
+    pair.formulation = axistokes::Formulation::InteriorDoubleLayer;
+    let (_error, _) = of(&pair);
+}
+
+/// Has lost interest from a stage on.
+struct Impatient(&'static str, std::sync::atomic::AtomicBool);
+
+impl Progress for Impatient {
+    fn begin(&self, stage: &'static str, _steps: usize) {
+        if stage == self.0 {
+            self.1.store(true, std::sync::atomic::Ordering::Relaxed);
+        }
+    }
+
+    fn advance(&self, _steps: usize) {}
+
+    fn is_cancelled(&self) -> bool {
+        self.1.load(std::sync::atomic::Ordering::Relaxed)
+    }
+}
+
+#[test]
+fn interruptions() {
+    let targets = [Point3::new(0.0, 0.0, 10.0)];
+    let pair = Suspension {
+        targets: &targets,
+        ..moved()
+    };
+    for stage in ["gaps", "near points", "iterating", "checking", "evaluating"] {
+        let impatient = Impatient(stage, false.into());
+        let (error, _) = refused(pair.to_tolerance(1e-6, &impatient));
+        assert!(matches!(error, SuspensionError::Interrupted), "{stage}");
+    }
+}

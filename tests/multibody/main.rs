@@ -1,0 +1,12 @@
+//! Many bodies against values that were found in other ways (`data/README.md`), against exact flows, and against themselves.
+
+mod chains;
+mod clusters;
+mod common;
+mod errors;
+mod iterations;
+mod methods;
+mod mixed;
+mod pairs;
+mod threads;
+mod two_spheres;

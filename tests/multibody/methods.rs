@@ -1,0 +1,144 @@
+//! Other ways to the same answer.
+
+use std::sync::Arc;
+
+use axistokes::krylov::Method;
+use axistokes::multibody::SuspensionError;
+use axistokes::multibody::suspension::{Answer, Options};
+use axistokes::{Body, Formulation, Frame, Silent, Suspension};
+use nalgebra::Point3;
+
+use super::common::{direction, moving, pushed, random, spheroid};
+
+const TOLERANCE: f64 = 1e-7;
+
+/// Four bodies near each other: three that move as they are told, one that is pushed.
+fn four() -> Suspension<'static> {
+    let mut rng = fastrand::Rng::with_seed(21);
+    let curves = [spheroid(1.0, 0.5), spheroid(0.5, 1.0)];
+    let places = [
+        [0.0, 0.0, 0.0],
+        [2.1, 0.0, 0.0],
+        [0.0, 2.1, 0.0],
+        [0.0, 0.0, 2.1],
+    ];
+    let bodies = places.iter().enumerate().map(|(k, &place)| Body {
+        motion: if k == 3 {
+            pushed(10.0 * random(&mut rng), 10.0 * random(&mut rng))
+        } else {
+            moving(random(&mut rng), random(&mut rng))
+        },
+        ..Body::new(
+            curves[k % 2].clone(),
+            Frame::new(Point3::from(place), direction(&mut rng)),
+        )
+    });
+    Suspension::new(bodies.collect())
+}
+
+/// The largest difference of forces and torques, relative to the largest, and of motions, relative to the largest speed.
+fn difference(a: &Answer, b: &Answer) -> f64 {
+    let largest = b.bodies.iter().fold(0.0f64, |most, body| {
+        most.max(body.wrench.force.norm())
+            .max(body.wrench.torque.norm())
+    });
+    a.bodies.iter().zip(&b.bodies).fold(0.0, |most, (a, b)| {
+        let wrench = a.wrench - b.wrench;
+        let motion = a.motion - b.motion;
+        most.max(wrench.force.norm() / largest)
+            .max(wrench.torque.norm() / largest)
+            .max(motion.velocity.norm().max(motion.angular_velocity.norm()))
+    })
+}
+
+#[test]
+fn agree() {
+    let four = four();
+    let reference = four.to_tolerance(TOLERANCE, &Silent).expect("an answer");
+    let resolutions: Vec<_> = (reference.bodies.iter())
+        .map(|b| Arc::new(b.resolution.clone()))
+        .collect();
+    let defaults = Options::default();
+    let with = |options: Options| Suspension {
+        options,
+        ..four.clone()
+    };
+    println!(
+        "reference: estimate {:.1e}, {} iterations, {} near points {} bytes, speed {}",
+        reference.error_estimate,
+        reference.iteration.iterations,
+        reference.near.0,
+        reference.near.1,
+        reference.largest_speed
+    );
+    let mut least = with(Options {
+        memory: Some(1),
+        ..defaults
+    });
+    let Err(SuspensionError::Memory { needed, .. }) =
+        least.at_resolutions(&resolutions, TOLERANCE, &Silent)
+    else {
+        panic!("a byte was enough");
+    };
+    least.options.memory = Some((needed * f64::from(1 << 30)) as usize + 2);
+    let variants = [
+        (
+            "exact products",
+            with(Options {
+                loosest_product: 0.0,
+                ..defaults
+            }),
+        ),
+        (
+            "one level",
+            with(Options {
+                two_level: false,
+                ..defaults
+            }),
+        ),
+        (
+            "restarts",
+            with(Options {
+                method: Method::Gmres { restart: 5 },
+                ..defaults
+            }),
+        ),
+        (
+            "BiCGStab",
+            with(Options {
+                method: Method::BiCgStab,
+                ..defaults
+            }),
+        ),
+        (
+            "BiCGStab, one level",
+            with(Options {
+                method: Method::BiCgStab,
+                two_level: false,
+                ..defaults
+            }),
+        ),
+        ("little memory", least),
+        (
+            "single layer",
+            Suspension {
+                formulation: Formulation::SingleLayer,
+                ..four.clone()
+            },
+        ),
+    ];
+    for (name, suspension) in &variants {
+        let answer = suspension.at_resolutions(&resolutions, TOLERANCE, &Silent);
+        match answer {
+            Ok(answer) => println!(
+                "{name}: {:.1e}, estimate {:.1e}, {} iterations, {} products, {} bytes near",
+                difference(&answer, &reference),
+                answer.error_estimate,
+                answer.iteration.iterations,
+                answer.products,
+                answer.near.1
+            ),
+            Err(error) => println!("{name}: {error}"),
+        }
+    }
+}

@@ -68,7 +68,7 @@
 //! | [`mod@resistance`] | from a case to the resistance of its shapes |
 //! | [`study`] | the convergence study |
 //! | [`krylov`] | Krylov methods for operators known by their products |
-//! | [`multibody`] | gaps between bodies, contact and overlap |
+//! | [`multibody`] | suspensions: many bodies, their interactions, gaps and contact |
 //! | [`progress`] | how a long computation tells where it is |
 //!
 //! The types of most programs are here at the root too, and [`nalgebra`], whose vectors and points they take.

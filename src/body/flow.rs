@@ -338,7 +338,9 @@ impl<'a> Flow<'a> {
             let points =
                 |panel: usize| far.points.sum::<GRADIENT>(far.panel(panel), targets[index]);
             match rest {
-                Rest::Panels => (0..count).filter(is_kept).for_each(|panel| at += points(panel)),
+                Rest::Panels => (0..count)
+                    .filter(is_kept)
+                    .for_each(|panel| at += points(panel)),
                 Rest::Points => near.iter().for_each(|&panel| at -= points(panel)),
             }
             found.push((index, at));

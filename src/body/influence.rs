@@ -61,15 +61,37 @@ impl Influence {
         rows: &mut [f64],
     ) -> Result<(), QuadratureError> {
         match weights {
-            LayerWeights { double: 0.0, .. } => {
-                self.fill_of(discretization, &SingleLayer, weights.single, point, panels, buffers, rows)
-            }
-            LayerWeights { single: 0.0, .. } => {
-                self.fill_of(discretization, &DoubleLayer, weights.double, point, panels, buffers, rows)
-            }
+            LayerWeights { double: 0.0, .. } => self.fill_of(
+                discretization,
+                &SingleLayer,
+                weights.single,
+                point,
+                panels,
+                buffers,
+                rows,
+            ),
+            LayerWeights { single: 0.0, .. } => self.fill_of(
+                discretization,
+                &DoubleLayer,
+                weights.double,
+                point,
+                panels,
+                buffers,
+                rows,
+            ),
             LayerWeights { double, single } => {
-                let kernel = CombinedField { eta: single / double };
-                self.fill_of(discretization, &kernel, double, point, panels, buffers, rows)
+                let kernel = CombinedField {
+                    eta: single / double,
+                };
+                self.fill_of(
+                    discretization,
+                    &kernel,
+                    double,
+                    point,
+                    panels,
+                    buffers,
+                    rows,
+                )
             }
         }
     }
@@ -98,8 +120,12 @@ impl Influence {
             if self.rules.is_far(discretization, seen, panel) {
                 buffers.near.take_own_nodes(discretization, &sight, panel);
             } else {
-                self.rules
-                    .fill_panel_off_curve(discretization, &sight, panel, &mut buffers.near)?;
+                self.rules.fill_panel_off_curve(
+                    discretization,
+                    &sight,
+                    panel,
+                    &mut buffers.near,
+                )?;
             }
             buffers.sources.clear();
             for (node, &separation) in buffers.near.nodes.iter().zip(&buffers.near.separation) {
@@ -202,8 +228,11 @@ impl Buffers {
         for &source in columns {
             let weight = factor * near.nodes[source].weight;
             let row = &near.interpolation[source * order..][..order];
-            self.interpolation
-                .extend(row.iter().zip(own).map(|(l, node)| l * weight / node.weight.sqrt()));
+            self.interpolation.extend(
+                row.iter()
+                    .zip(own)
+                    .map(|(l, node)| l * weight / node.weight.sqrt()),
+            );
         }
         self.interpolated.resize(9 * modes * order, 0.0);
         matmul(
@@ -244,15 +273,30 @@ mod tests {
         for (double, single) in [(1.0, 0.0), (0.0, 2.0), (1.0, 0.7)] {
             let weights = LayerWeights { double, single };
             let flow = Flow::new(&discretization, Layers::weighted(&density, weights));
-            for point in [[0.0, 0.0, 1.1], [0.61, 0.0, 0.02], [-0.3, 0.5, 0.3], [1.0, 2.0, -0.4]] {
+            for point in [
+                [0.0, 0.0, 1.1],
+                [0.61, 0.0, 0.02],
+                [-0.3, 0.5, 0.3],
+                [1.0, 2.0, -0.4],
+            ] {
                 let point = Point3::from(point);
                 influence
-                    .fill(&discretization, weights, point, &[0, 1, 2], &mut buffers, &mut rows)
+                    .fill(
+                        &discretization,
+                        weights,
+                        point,
+                        &[0, 1, 2],
+                        &mut buffers,
+                        &mut rows,
+                    )
                     .unwrap();
-                let found =
-                    influence.velocity(&discretization, &rows, &[0, 1, 2], &field, point);
+                let found = influence.velocity(&discretization, &rows, &[0, 1, 2], &field, point);
                 let exact = flow.at(&[point], 1e-15).unwrap()[0].velocity;
-                assert!((found - exact).norm() < 1e-13, "{:e}", (found - exact).norm());
+                assert!(
+                    (found - exact).norm() < 1e-13,
+                    "{:e}",
+                    (found - exact).norm()
+                );
             }
         }
     }

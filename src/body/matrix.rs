@@ -139,7 +139,12 @@ impl ModalMatrices {
         let mut targets: Vec<TargetRows<'_>> = (0..nodes)
             .map(|_| Vec::with_capacity(3 * self.modes))
             .collect();
-        for (i, row) in self.rows.as_mut_slice().chunks_mut(self.unknowns).enumerate() {
+        for (i, row) in self
+            .rows
+            .as_mut_slice()
+            .chunks_mut(self.unknowns)
+            .enumerate()
+        {
             targets[i % nodes].push(row);
         }
         targets

@@ -139,7 +139,12 @@ fn fill(
         matmul(
             MatMut::from_column_major_slice_mut(spectrum, count, modes),
             Accum::Replace,
-            MatRef::from_column_major_slice(&samples[k * count * half..][..count * half], half, count).transpose(),
+            MatRef::from_column_major_slice(
+                &samples[k * count * half..][..count * half],
+                half,
+                count,
+            )
+            .transpose(),
             MatRef::from_column_major_slice(table, half, modes),
             sign * root,
             Par::Seq,

@@ -122,12 +122,6 @@ impl SurfaceGrid {
             .flat_map(move |panel| panel * stride..panel * stride + on_panel)
     }
 
-    /// The place of a point in padded arrays.
-    pub fn place(&self, point: usize) -> usize {
-        let on_panel = self.order * self.azimuths;
-        point / on_panel * self.stride + point % on_panel
-    }
-
     /// The places of a panel's points, padding included.
     fn panel(&self, panel: usize) -> Range<usize> {
         panel * self.stride..(panel + 1) * self.stride
@@ -146,11 +140,6 @@ impl SurfaceGrid {
     /// Room for a vector at every point.
     pub fn vectors(&self) -> PointVectors {
         [(); 3].map(|()| vec![0.0; self.position[0].len()])
-    }
-
-    /// The square roots of the nodes' weights.
-    pub fn roots(&self) -> &[f64] {
-        &self.roots
     }
 
     /// The field at the points, Cartesian, times the points' shares of the surface.
@@ -293,7 +282,6 @@ mod tests {
         grid.to_points(&field, &mut scratch, &mut out);
         let mut area = 0.0;
         for (point, place) in grid.places().enumerate() {
-            assert_eq!(grid.place(point), place);
             let x = grid.position(place).coords;
             let k = point / (10 * 11) * 10 + point % 10;
             let share = discretization.nodes()[k].weight * 2.0 * PI / 11.0;
@@ -333,8 +321,7 @@ mod tests {
                 let d = x - grid.position(source);
                 let r = d.norm();
                 let q = Vector3::from(strengths.each_ref().map(|s| s[source]));
-                let stresslet =
-                    6.0 * d * d.dot(&q) * d.dot(&grid.normal(source)) / r.powi(5);
+                let stresslet = 6.0 * d * d.dot(&q) * d.dot(&grid.normal(source)) / r.powi(5);
                 sum += stresslet + weights.single * (q / r + d * d.dot(&q) / r.powi(3));
             }
             for j in 0..3 {
@@ -343,8 +330,7 @@ mod tests {
         }
         let mut expected = vec![0.0; field.len()];
         grid.add_modes(&velocity, &mut scratch, &mut expected);
-        let matrices =
-            ModalMatrices::of_point_sum(&discretization, weights, 4, grid.azimuths());
+        let matrices = ModalMatrices::of_point_sum(&discretization, weights, 4, grid.azimuths());
         let found = matrices.apply(&discretization, &modes);
         for (a, b) in expected.iter().zip(found.scaled_by_roots(&discretization)) {
             assert!((a - b).abs() < 1e-14, "{a} against {b}");

@@ -116,8 +116,9 @@ impl SurfacePoints {
 
     /// Every point, without those that pad registers.
     pub fn for_each(&self, mut each: impl FnMut(SurfacePoint)) {
-        let vector =
-            |of: &[Vec<f64>; 3], i: usize| Vector3::from(of.each_ref().map(|component| component[i]));
+        let vector = |of: &[Vec<f64>; 3], i: usize| {
+            Vector3::from(of.each_ref().map(|component| component[i]))
+        };
         for i in 0..self.len() {
             let normal = vector(&self.normal, i);
             if normal != Vector3::zeros() {

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use super::SuspensionError;
 use super::class::Class;
 use super::interactions::Interactions;
+use super::resolution::are_coaxial;
 use super::solution::{Imposed, Solution};
 use super::suspension::{Motion, Suspension};
 use super::tables::{Member, Tables};
@@ -52,6 +53,8 @@ pub(crate) fn misses(
     let classes = &solution.classes;
     let bodies = &suspension.bodies;
     progress.begin("checking", classes.len() + bodies.len());
+    // With one axis for all, the modes of rigid motions and linear flows are all there are.
+    let exact = are_coaxial(bodies) && bodies.iter().all(|body| body.slip.is_none());
     let finer: Vec<Finer> = classes
         .iter()
         .map(|class| {
@@ -59,7 +62,11 @@ pub(crate) fn misses(
             Ok(Finer {
                 class: class.clone(),
                 discretization: from.with_order(from.order() + EXTRA_ORDER)?,
-                n_max: checking_modes(class.tables.n_max),
+                n_max: if exact {
+                    class.tables.n_max
+                } else {
+                    checking_modes(class.tables.n_max)
+                },
             })
         })
         .collect::<Result<_, SuspensionError>>()?;
@@ -71,7 +78,11 @@ pub(crate) fn misses(
     let layers: Vec<Layers> = (0..bodies.len())
         .into_par_iter()
         .map(|i| {
-            let Finer { class, discretization, n_max } = &finer[finer_of[i]];
+            let Finer {
+                class,
+                discretization,
+                n_max,
+            } = &finer[finer_of[i]];
             let resampled = |field: &SurfaceModes| {
                 field.resampled(&class.tables.discretization, discretization, *n_max)
             };
@@ -83,7 +94,9 @@ pub(crate) fn misses(
         .collect::<Result<_, SuspensionError>>()?;
     let mut own: Vec<Option<SurfaceModes>> = vec![None; bodies.len()];
     for (index, of_class) in finer.iter().enumerate() {
-        let alike: Vec<usize> = (0..bodies.len()).filter(|&i| finer_of[i] == index).collect();
+        let alike: Vec<usize> = (0..bodies.len())
+            .filter(|&i| finer_of[i] == index)
+            .collect();
         let alone = alone(of_class, &alike, &layers)?;
         for (body, velocity) in alike.into_iter().zip(alone) {
             own[body] = Some(velocity);
@@ -97,7 +110,11 @@ pub(crate) fn misses(
     let misses = own.into_iter().flatten().zip(others).enumerate();
     Ok(misses
         .map(|(i, (own, others))| {
-            let Finer { class, discretization, n_max } = &finer[finer_of[i]];
+            let Finer {
+                class,
+                discretization,
+                n_max,
+            } = &finer[finer_of[i]];
             let body = &bodies[i];
             let imposed = Imposed::new(body, &suspension.background, discretization, *n_max, None);
             let mut miss = own.plus(1.0, &others).plus(-1.0, &imposed.velocity);
@@ -115,13 +132,16 @@ fn alone(
     bodies: &[usize],
     layers: &[Layers],
 ) -> Result<Vec<SurfaceModes>, SuspensionError> {
-    let Finer { class, discretization, n_max } = finer;
+    let Finer {
+        class,
+        discretization,
+        n_max,
+    } = finer;
     let weights = class.tables.weights;
     let is_free = class.free().is_some();
     // A held body's layers have one density; a free body's single layer is a rigid motion.
     let (matrices, of_single) = if is_free {
-        let double =
-            ModalMatrices::assemble(discretization, &DoubleLayer, 0.5, *n_max, &|| ())?;
+        let double = ModalMatrices::assemble(discretization, &DoubleLayer, 0.5, *n_max, &|| ())?;
         let single = ModalMatrices::of(LayerPotential::Single, discretization, 1)?;
         (double, Some(single))
     } else if weights.double == 0.0 {
@@ -179,20 +199,29 @@ fn from_others(
         }
         let tables: Vec<Arc<Tables>> = finer
             .iter()
-            .map(|f| Ok(Arc::new(Tables::new(f.discretization.clone(), f.n_max, weights)?)))
+            .map(|f| {
+                Ok(Arc::new(Tables::new(
+                    f.discretization.clone(),
+                    f.n_max,
+                    weights,
+                )?))
+            })
             .collect::<Result<_, SuspensionError>>()?;
-        let members = suspension.bodies.iter().zip(finer_of).map(|(body, &index)| Member {
-            tables: tables[index].clone(),
-            frame: body.frame,
-        });
+        let members = suspension
+            .bodies
+            .iter()
+            .zip(finer_of)
+            .map(|(body, &index)| Member {
+                tables: tables[index].clone(),
+                frame: body.frame,
+            });
         // The rows are needed once.
         let mut interactions = Interactions::new(members.collect(), tolerance, 0, &|_| ())?;
         let mut velocities = vec![0.0; fields.len()];
         interactions.add_velocities(&fields, &mut velocities, tolerance)?;
         let layout = interactions.layout();
         for (i, sum) in sum.iter_mut().enumerate() {
-            let mine =
-                SurfaceModes::from_scaled(discretization(i), &velocities[layout.of(i)]);
+            let mine = SurfaceModes::from_scaled(discretization(i), &velocities[layout.of(i)]);
             *sum = std::mem::replace(sum, SurfaceModes::zero(0, 0)).plus(1.0, &mine);
         }
         progress.advance(suspension.bodies.len() / 2);

@@ -9,7 +9,7 @@ use super::coarse::RigidTractions;
 use super::tables::Tables;
 use crate::body::dirichlet::{DirichletSolver, Formulation};
 use crate::body::discretization::Discretization;
-use crate::body::factors::ModalFactors;
+use crate::body::factors::{ModalFactors, Seconds};
 use crate::body::layers::LayerWeights;
 use crate::body::mobility::MobilitySolver;
 use crate::body::problem::Resolution;
@@ -123,6 +123,14 @@ impl Class {
         }
     }
 
+    /// How long its matrices took.
+    fn seconds(&self) -> Seconds {
+        match &self.solver {
+            Solver::Held(solver) => solver.seconds(),
+            Solver::Free(solver) => solver.seconds(),
+        }
+    }
+
     /// How free bodies are solved for; nothing for held ones.
     pub fn free(&self) -> Option<&MobilitySolver> {
         match &self.solver {
@@ -168,6 +176,15 @@ impl Classes {
         };
         let classes = distinct.par_iter().map(make).collect::<Result<_, _>>()?;
         Ok(Self { classes, of })
+    }
+
+    /// Which part of the time that the matrices took went into their factors.
+    pub fn share_of_factoring(&self) -> f64 {
+        let seconds = self.classes.iter().map(|class| class.seconds());
+        let [assemble, factor] = seconds.fold([0.0, f64::MIN_POSITIVE], |[a, f], of| {
+            [a + of.assemble, f + of.factor]
+        });
+        factor / (assemble + factor)
     }
 
     /// The class of a body.

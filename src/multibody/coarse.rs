@@ -56,7 +56,10 @@ fn elementary(k: usize) -> RigidMotion {
 }
 
 fn six(wrench: Wrench) -> Vector6<f64> {
-    let Wrench { force: f, torque: t } = wrench;
+    let Wrench {
+        force: f,
+        torque: t,
+    } = wrench;
     Vector6::new(f.x, f.y, f.z, t.x, t.y, t.z)
 }
 
@@ -66,15 +69,9 @@ impl RigidTractions {
     /// # Errors
     /// If a quadrature rule is missing.
     pub fn new(discretization: &Discretization) -> Result<Self, QuadratureError> {
-        let solver = DirichletSolver::new(
-            discretization.clone(),
-            Formulation::SingleLayer,
-            1,
-            &Silent,
-        )?;
-        let motions: Vec<SurfaceModes> = (0..6)
-            .map(|k| elementary(k).on(discretization))
-            .collect();
+        let solver =
+            DirichletSolver::new(discretization.clone(), Formulation::SingleLayer, 1, &Silent)?;
+        let motions: Vec<SurfaceModes> = (0..6).map(|k| elementary(k).on(discretization)).collect();
         let tractions: Vec<SurfaceModes> = motions.iter().map(|on| solver.solve(on)).collect();
         let columns: Vec<Vector6<f64>> = tractions
             .iter()
@@ -202,9 +199,8 @@ impl InLab {
                 0.0
             }
         };
-        let forces = (0..6).map(|motion| {
-            [0, 1, 2].map(|k| all.clone().map(|i| force(motion, k, i)).collect())
-        });
+        let forces = (0..6)
+            .map(|motion| [0, 1, 2].map(|k| all.clone().map(|i| force(motion, k, i)).collect()));
         Self {
             position,
             forces: forces.collect(),
@@ -231,21 +227,23 @@ impl<'t> Coarse<'t> {
         let size = 6 * bodies.len();
         // Row after row, which is the transposed matrix column after column; a body's six rows are one task.
         let mut rows = vec![0.0; size * size];
-        rows.par_chunks_mut(6 * size).enumerate().for_each(|(i, rows)| {
-            let mobility = &bodies[i].1.mobility;
-            for (j, other) in in_lab.iter().enumerate() {
-                let block = if i == j {
-                    Matrix6::identity()
-                } else {
-                    other.scale * mobility * energy(&in_lab[i], other)
-                };
-                for (k, row) in rows.chunks_mut(size).enumerate() {
-                    for l in 0..6 {
-                        row[6 * j + l] = block[(k, l)];
+        rows.par_chunks_mut(6 * size)
+            .enumerate()
+            .for_each(|(i, rows)| {
+                let mobility = &bodies[i].1.mobility;
+                for (j, other) in in_lab.iter().enumerate() {
+                    let block = if i == j {
+                        Matrix6::identity()
+                    } else {
+                        other.scale * mobility * energy(&in_lab[i], other)
+                    };
+                    for (k, row) in rows.chunks_mut(size).enumerate() {
+                        for l in 0..6 {
+                            row[6 * j + l] = block[(k, l)];
+                        }
                     }
                 }
-            }
-        });
+            });
         let permutation = factor_in_place(&mut rows, size);
         Some(Self {
             bodies,
@@ -312,8 +310,7 @@ impl WithSimd for Energy<'_> {
                         Lanes::load(simd, &force[1], register),
                         Lanes::load(simd, &force[2], register),
                     ];
-                    let along =
-                        cube * d[0].mul_add(f[0], d[1].mul_add(f[1], d[2] * f[2]));
+                    let along = cube * d[0].mul_add(f[0], d[1].mul_add(f[1], d[2] * f[2]));
                     for k in 0..3 {
                         velocity[k] += along.mul_add(d[k], inv * f[k]);
                     }

@@ -27,15 +27,13 @@ const MOST_PATCHES: usize = 200_000;
 /// Most starts of the minimisation.
 const MOST_STARTS: usize = 12;
 
-/// A body in the laboratory: the point `x` of its generating curve's frame is at `frame(scale * x)`.
+/// A body in the laboratory.
 #[derive(Clone, Copy, Debug)]
 pub struct Placed<'a> {
     /// The generating curve.
     pub curve: &'a dyn GeneratingCurve,
-    /// Centre and axis.
+    /// Where it is, and how large.
     pub frame: Frame,
-    /// Length in the laboratory of a unit of the curve.
-    pub scale: f64,
     /// Distance from this body up to which others are of interest; for a pair the larger one of the two counts.
     pub reach: f64,
 }
@@ -191,8 +189,8 @@ pub fn gaps(bodies: &[Placed<'_>]) -> Result<Vec<Gap>, ContactError> {
         .zip(&which)
         .map(|(placed, &shape)| Located {
             shape: &shapes[shape],
-            frame: placed.frame,
-            scale: placed.scale,
+            frame: placed.frame.scaled(1.0),
+            scale: placed.frame.scale(),
         })
         .collect();
     let reach = |i: usize, j: usize| bodies[i].reach.max(bodies[j].reach);
@@ -210,8 +208,9 @@ fn validate(body: usize, placed: &Placed<'_>) -> Result<(), ContactError> {
         expected,
         value,
     };
-    if !(placed.scale > 0.0 && placed.scale.is_finite()) {
-        return Err(bad("the scale", "a positive number", placed.scale));
+    let scale = placed.frame.scale();
+    if !(scale > 0.0 && scale.is_finite()) {
+        return Err(bad("the scale", "a positive number", scale));
     }
     if !(placed.reach >= 0.0 && placed.reach.is_finite()) {
         return Err(bad("the reach", "zero or a positive length", placed.reach));

@@ -7,8 +7,14 @@ fn at<'a>(curve: &'a dyn GeneratingCurve, center: [f64; 3], axis: [f64; 3]) -> P
     Placed {
         curve,
         frame: Frame::new(center.into(), Unit::new_normalize(axis.into())),
-        scale: 1.0,
         reach: 10.0,
+    }
+}
+
+fn scaled<'a>(scale: f64, placed: Placed<'a>) -> Placed<'a> {
+    Placed {
+        frame: placed.frame.scaled(scale),
+        ..placed
     }
 }
 
@@ -54,14 +60,14 @@ fn spheres() {
                 Vector3::from(direction(&mut chance)),
                 direction(&mut chance),
             );
-            let second = Placed {
-                scale: radius,
-                ..at(
+            let second = scaled(
+                radius,
+                at(
                     &sphere,
                     (Vector3::from(c) + n * (1.0 + radius + gap)).into(),
                     direction(&mut chance),
-                )
-            };
+                ),
+            );
             let first = at(&sphere, c, direction(&mut chance));
             let found = gap_of(first, second);
             let error = (found.distance - gap).abs();
@@ -314,10 +320,7 @@ fn tori_around_things() {
     // Side by side in a plane, one in the other, one above the other.
     let found = distance_of(ring, at(&thin, [4.7, 0.0, 0.0], Z));
     assert!((found - 0.1).abs() < 5e-15);
-    let small = Placed {
-        scale: 0.5,
-        ..at(&thin, [0.1, 0.0, 0.0], Z)
-    };
+    let small = scaled(0.5, at(&thin, [0.1, 0.0, 0.0], Z));
     assert!((distance_of(ring, small) - 0.45).abs() < 1e-15);
     let found = distance_of(ring, at(&thin, [0.0, 0.0, 0.7], Z));
     assert!((found - 0.1).abs() < 1e-15);
@@ -393,10 +396,7 @@ fn bodies_inside_others() {
         (&torus, [2.0, 0.1, 0.1], 0.3),
         (&capsule, [0.0, 0.0, 1.7], 0.9),
     ] {
-        let inner = Placed {
-            scale,
-            ..at(&sphere, at_inner, direction(&mut chance))
-        };
+        let inner = scaled(scale, at(&sphere, at_inner, direction(&mut chance)));
         let outer = at(outer, [0.0; 3], Z);
         for reach in [0.0, 1.0] {
             let (inner, outer) = (Placed { reach, ..inner }, Placed { reach, ..outer });
@@ -472,7 +472,7 @@ fn bad_places_are_refused() {
     let good = at(&sphere, [0.0; 3], Z);
     let told = |bad: Placed<'_>| gaps(&[good, bad]).unwrap_err().to_string();
     assert_eq!(
-        told(Placed { scale: 0.0, ..good }),
+        told(scaled(0.0, good)),
         "body 1: the scale must be a positive number, got 0"
     );
     assert_eq!(

@@ -8,12 +8,12 @@ use stokes_fmm::{Output, Points, Singularities, Strengths, Stresslets};
 
 use super::SuspensionError;
 use super::sums::{Planned, Sums};
+use crate::body::discretization::Discretization;
 use crate::body::flow::{Flow, FlowError, Side, first_not_finite};
 use crate::body::frame::Frame;
 use crate::body::layers::Layers;
 use crate::body::linear_flow::{self, LinearFlow};
 use crate::body::surface::SurfaceModes;
-use crate::body::discretization::Discretization;
 use crate::kernel::{FlowAt, FlowGradientAt};
 use crate::progress::{Progress, Silent};
 
@@ -266,7 +266,9 @@ impl Sources {
                 sources.positions.push(position.into());
                 sources.stokeslets.push(vector(scale * point.single));
                 // The sum's stresslet has the other sign.
-                sources.densities.push(vector(-scale * scale * point.double));
+                sources
+                    .densities
+                    .push(vector(-scale * scale * point.double));
                 sources.normals.push(vector(point.normal));
             })?;
         }
@@ -293,13 +295,9 @@ impl Sources {
             ..Strengths::default()
         };
         let points = Points::apart(&self.positions, &targets);
-        let mut sums = Sums::new(Singularities::Both, output);
-        let flow = sums.apply(
-            &mut Planned::default(),
-            points,
-            &strengths,
-            MARGIN * tolerance,
-        )?;
+        let tolerance = MARGIN * tolerance;
+        let mut sums = Sums::new(Singularities::Both, output, tolerance);
+        let flow = sums.apply(&mut Planned::default(), points, &strengths, tolerance)?;
         let at = |index: usize| FlowGradientAt {
             velocity: flow.velocity[index].into(),
             pressure: flow.pressure[index],

@@ -3,6 +3,8 @@
 //! All points together go through one [fast sum](stokes_fmm). What it counts of a body's own points is taken away by the shape's
 //! [point sums](crate::body::matrix), and points that are [near](super::near) another body are put right.
 
+use std::time::Instant;
+
 use panel_quadrature::QuadratureError;
 use rayon::prelude::*;
 use stokes_fmm::{FmmError, Output, Points, Singularities, Strengths, Stresslets};
@@ -39,6 +41,8 @@ pub(crate) struct Interactions {
     near: Near,
     sums: Sums,
     planned: Planned,
+    /// Wall-clock seconds of all sums so far.
+    pub seconds_of_sums: f64,
     own: Vec<f64>,
     strengths: Vec<PointVectors>,
     stokeslets: Vec<[f64; 3]>,
@@ -88,8 +92,9 @@ impl Interactions {
             strengths: members.iter().map(|m| m.tables.grid.vectors()).collect(),
             stokeslets: room(single),
             stresslets: room(double),
-            sums: Sums::new(singularities, Output::Velocity),
+            sums: Sums::new(singularities, Output::Velocity, tolerance),
             planned: Planned::default(),
+            seconds_of_sums: 0.0,
             members,
             fields,
             points,
@@ -138,11 +143,13 @@ impl Interactions {
             }),
             ..Strengths::default()
         };
+        let start = Instant::now();
         let points = Points::same(&self.positions);
         let mut velocity = self
             .sums
             .apply(&mut self.planned, points, &strengths, tolerance)?
             .velocity;
+        self.seconds_of_sums += start.elapsed().as_secs_f64();
         self.own.copy_from_slice(densities);
         let members = &self.members;
         self.batches

@@ -13,6 +13,7 @@ pub mod contact;
 mod descent;
 pub mod flow;
 mod further;
+pub mod grand;
 pub mod interactions;
 mod meridian;
 pub(crate) mod near;
@@ -51,7 +52,9 @@ pub enum SuspensionError {
     #[error(transparent)]
     Contact(#[from] ContactError),
     /// The iteration did not converge.
-    #[error("the iteration ended after {iterations} iterations at a relative residual of {residual:.1e}: expected {wanted:.1e} ({stop:?})")]
+    #[error(
+        "the iteration ended after {iterations} iterations at a relative residual of {residual:.1e}: expected {wanted:.1e} ({stop:?})"
+    )]
     NotConverged {
         /// Iterations made.
         iterations: usize,
@@ -69,7 +72,9 @@ pub enum SuspensionError {
         body: usize,
     },
     /// More memory would be needed than there is.
-    #[error("{needed:.1} GiB of memory would be needed for {what}: expected at most {budget:.1} GiB")]
+    #[error(
+        "{needed:.1} GiB of memory would be needed for {what}: expected at most {budget:.1} GiB"
+    )]
     Memory {
         /// For what.
         what: &'static str,

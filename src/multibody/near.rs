@@ -18,22 +18,26 @@ use crate::body::surface_grid::PointVectors;
 pub(crate) struct Visit {
     /// The other body.
     source: usize,
-    points: Vec<NearPoint>,
-    /// The panels of all points.
+    /// Ring after ring about the other body's axis, the points on it: their numbers among those of their own body, and where they are in the frame of the
+    /// other body.
+    points: Vec<(usize, Point3<f64>)>,
+    rings: Vec<NearRing>,
+    /// The panels of all rings.
     panels: Vec<u32>,
-    /// The rows of all points, or none if they are made each time.
+    /// The rows of all rings, or none if they are made each time.
     rows: Option<Vec<f64>>,
 }
 
+/// Points at one radius and height about the other body's axis: they have the same rows. Bodies on one axis have hardly anything else.
 #[derive(Clone, Copy, Debug)]
-struct NearPoint {
-    /// Its number among the points of its own body.
-    index: usize,
-    /// Where it is, in the frame of the other body.
-    at: Point3<f64>,
-    /// How many of the panels are its own.
+struct NearRing {
+    /// How many of the points are on it, and how many of the panels are its own.
+    points: usize,
     panels: usize,
 }
+
+/// Difference of radius and height, in units of the body's size, of points on one ring.
+const GRAIN: f64 = 1e-14;
 
 /// All that is near, body by body.
 #[derive(Debug)]
@@ -41,8 +45,6 @@ pub(crate) struct Near {
     visits: Vec<Vec<Visit>>,
     /// Bytes of the rows that are kept.
     pub stored: usize,
-    /// Bytes that the others would take.
-    pub recomputed: usize,
 }
 
 /// A thread's buffers.
@@ -71,14 +73,12 @@ impl Near {
             .into_par_iter()
             .map(|body| visits(members, &surroundings, body))
             .collect();
-        let (mut stored, mut recomputed) = (0, 0);
+        let mut stored = 0;
         for visit in visits.iter_mut().flatten() {
             let bytes = 8 * visit.len(members);
             if stored + bytes <= memory {
                 stored += bytes;
                 visit.rows = Some(Vec::new());
-            } else {
-                recomputed += bytes;
             }
         }
         let rows = |room: &mut Room, visits: &mut Vec<Visit>| {
@@ -91,11 +91,7 @@ impl Near {
         visits
             .par_iter_mut()
             .try_for_each_init(Room::default, rows)?;
-        Ok(Self {
-            visits,
-            stored,
-            recomputed,
-        })
+        Ok(Self { visits, stored })
     }
 
     /// Adds, to the velocities of a body's points in the laboratory (`velocity(point)`), what is exact less what the points of the panels do:
@@ -110,7 +106,13 @@ impl Near {
     ) -> Result<(), QuadratureError> {
         let mut room = Room::default();
         for visit in &self.visits[body] {
-            visit.correct(members, field(visit.source), &strengths[visit.source], velocity, &mut room)?;
+            visit.correct(
+                members,
+                field(visit.source),
+                &strengths[visit.source],
+                velocity,
+                &mut room,
+            )?;
         }
         Ok(())
     }
@@ -169,24 +171,41 @@ fn visits(members: &[Member], surroundings: &[Surrounding], body: usize) -> Vec<
     visits
 }
 
-fn visit(member: &Member, source: usize, other: &Member, around: &Surrounding, beyond: f64) -> Visit {
+fn visit(
+    member: &Member,
+    source: usize,
+    other: &Member,
+    around: &Surrounding,
+    beyond: f64,
+) -> Visit {
     let grid = &member.tables.grid;
     let discretization = &other.tables.discretization;
     let beyond = beyond / other.frame.scale();
-    let mut visit = Visit {
-        source,
-        points: Vec::new(),
-        panels: Vec::new(),
-        rows: None,
-    };
+    let grain = GRAIN * discretization.size();
+    let mut near: Vec<([i64; 2], usize, Point3<f64>)> = Vec::new();
     for (index, place) in grid.places().enumerate() {
         let at = other
             .frame
             .point_to_body(member.frame.point_to_lab(grid.position(place)));
-        if at.coords.norm() > beyond {
-            continue;
+        if at.coords.norm() <= beyond {
+            let seen = meridian(&at);
+            near.push((
+                [seen.r, seen.z].map(|x| (x / grain).round() as i64),
+                index,
+                at,
+            ));
         }
-        let seen = meridian(&at);
+    }
+    near.sort_unstable_by_key(|&(ring, index, _)| (ring, index));
+    let mut visit = Visit {
+        source,
+        points: Vec::new(),
+        rings: Vec::new(),
+        panels: Vec::new(),
+        rows: None,
+    };
+    for ring in near.chunk_by(|a, b| a.0 == b.0) {
+        let seen = meridian(&ring[0].2);
         let before = visit.panels.len();
         let panels = 0..discretization.panels().len();
         visit.panels.extend(
@@ -196,7 +215,11 @@ fn visit(member: &Member, source: usize, other: &Member, around: &Surrounding, b
         );
         let panels = visit.panels.len() - before;
         if panels > 0 {
-            visit.points.push(NearPoint { index, at, panels });
+            let points = ring.len();
+            visit.rings.push(NearRing { points, panels });
+            visit
+                .points
+                .extend(ring.iter().map(|&(_, index, at)| (index, at)));
         }
     }
     visit
@@ -219,20 +242,22 @@ impl Visit {
         };
         rows.resize(length, 0.0);
         let tables = &members[self.source].tables;
-        let (mut panels, mut rest) = (&self.panels[..], &mut rows[..]);
-        for point in &self.points {
-            let (own, others) = panels.split_at(point.panels);
+        let (mut points, mut panels) = (&self.points[..], &self.panels[..]);
+        let mut rest = &mut rows[..];
+        for ring in &self.rings {
+            let (on_ring, other_points) = points.split_at(ring.points);
+            let (own, others) = panels.split_at(ring.panels);
             let length = tables.influence.len(&tables.discretization, own.len());
             let (rows, others_rows) = std::mem::take(&mut rest).split_at_mut(length);
             tables.influence.fill(
                 &tables.discretization,
                 tables.weights,
-                point.at,
+                on_ring[0].1,
                 own,
                 &mut room.buffers,
                 rows,
             )?;
-            (panels, rest) = (others, others_rows);
+            (points, panels, rest) = (other_points, others, others_rows);
         }
         Ok(())
     }
@@ -248,10 +273,12 @@ impl Visit {
         let member = &members[self.source];
         let tables = &member.tables;
         let (influence, discretization) = (&tables.influence, &tables.discretization);
-        let (mut panels, mut kept) = (&self.panels[..], self.rows.as_deref());
-        for point in &self.points {
-            let (own, others) = panels.split_at(point.panels);
-            panels = others;
+        let (mut points, mut panels) = (&self.points[..], &self.panels[..]);
+        let mut kept = self.rows.as_deref();
+        for ring in &self.rings {
+            let (on_ring, other_points) = points.split_at(ring.points);
+            let (own, others) = panels.split_at(ring.panels);
+            (points, panels) = (other_points, others);
             let length = influence.len(discretization, own.len());
             let rows = match &mut kept {
                 Some(rows) => {
@@ -264,7 +291,7 @@ impl Visit {
                     influence.fill(
                         discretization,
                         tables.weights,
-                        point.at,
+                        on_ring[0].1,
                         own,
                         &mut room.buffers,
                         &mut room.rows[..length],
@@ -272,18 +299,18 @@ impl Visit {
                     &room.rows[..length]
                 }
             };
-            let mut exact = influence.velocity(discretization, rows, own, field, point.at);
-            for &panel in own {
-                exact -= tables.grid.panel_velocity(
-                    panel as usize,
-                    tables.weights,
-                    strengths,
-                    point.at,
-                );
-            }
-            let correction: Vector3<f64> = member.frame.vector_to_lab(exact);
-            for k in 0..3 {
-                velocity[point.index][k] += correction[k];
+            for &(index, at) in on_ring {
+                let mut exact = influence.velocity(discretization, rows, own, field, at);
+                for &panel in own {
+                    let panel = panel as usize;
+                    exact -= tables
+                        .grid
+                        .panel_velocity(panel, tables.weights, strengths, at);
+                }
+                let correction: Vector3<f64> = member.frame.vector_to_lab(exact);
+                for k in 0..3 {
+                    velocity[index][k] += correction[k];
+                }
             }
         }
         Ok(())

@@ -65,9 +65,9 @@ pub(crate) fn first(
             order: ORDER,
             modes,
         };
-        let same = known.iter().find(|(curve, other)| {
-            Arc::ptr_eq(curve, &body.curve) && **other == resolution
-        });
+        let same = known
+            .iter()
+            .find(|(curve, other)| Arc::ptr_eq(curve, &body.curve) && **other == resolution);
         let shared = match same {
             Some((_, shared)) => shared.clone(),
             None => {
@@ -82,7 +82,7 @@ pub(crate) fn first(
 }
 
 /// Whether all bodies have one axis: their modes do not mix.
-fn are_coaxial(bodies: &[Body<'_>]) -> bool {
+pub(crate) fn are_coaxial(bodies: &[Body<'_>]) -> bool {
     let axis = bodies[0].frame.axis();
     let origin = bodies[0].frame.center();
     bodies.iter().all(|body| {
@@ -213,7 +213,11 @@ pub(crate) fn refined(kinds: &[Kind], misses: &[Miss], allowed: f64) -> Vec<Kind
 /// Which panels a body wants bisected, and whether it wants more modes.
 fn wanted(kind: &Kind, miss: &Miss, allowed: f64) -> (Vec<bool>, bool) {
     let n_max = kind.resolution.modes;
-    let beyond = miss.modes.iter().skip(n_max + 1).fold(0.0, |a: f64, &b| a.max(b));
+    let beyond = miss
+        .modes
+        .iter()
+        .skip(n_max + 1)
+        .fold(0.0, |a: f64, &b| a.max(b));
     let more_modes = beyond > 0.25 * allowed;
     let worst = miss.panels.iter().fold(0.0, |a: f64, &b| a.max(b));
     let marked: Vec<bool> = (miss.panels.iter())

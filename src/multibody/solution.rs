@@ -70,11 +70,14 @@ pub(crate) struct Solution {
 /// Wall-clock seconds.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Seconds {
-    /// Assembling and factoring single bodies.
+    /// Assembling single bodies, and factoring them.
+    pub assemble: f64,
     pub factor: f64,
     /// Finding what is near, and its rows.
     pub near: f64,
     pub iterate: f64,
+    /// Of that, the sums over points.
+    pub sum: f64,
 }
 
 /// What is imposed on a body, in its frame.
@@ -110,9 +113,11 @@ impl Imposed {
             None => SurfaceModes::sample(discretization, 1, |x| motion.at(x)),
         };
         let single = match (body.motion, free) {
-            (Motion::Free(wrench), Some(shell)) => {
-                Some(shell.motion(frame.wrench_to_body(wrench)).on(discretization))
-            }
+            (Motion::Free(wrench), Some(shell)) => Some(
+                shell
+                    .motion(frame.wrench_to_body(wrench))
+                    .on(discretization),
+            ),
             _ => None,
         };
         Self {
@@ -128,15 +133,17 @@ pub(crate) fn solve(
     suspension: &Suspension<'_>,
     kinds: &[Kind],
     care: Care,
+    known: &Classes,
     before: Option<&Solution>,
     progress: &dyn Progress,
 ) -> Result<(Solution, f64), SuspensionError> {
     let start = Instant::now();
-    let none = Classes::default();
-    let known = before.map_or(&none, |before| &before.classes);
     let classes = Classes::new(kinds, known, progress)?;
+    let spent = start.elapsed().as_secs_f64();
+    let factoring = spent * classes.share_of_factoring();
     let mut seconds = Seconds {
-        factor: start.elapsed().as_secs_f64(),
+        assemble: spent - factoring,
+        factor: factoring,
         ..Seconds::default()
     };
     let start = Instant::now();
@@ -182,14 +189,23 @@ pub(crate) fn solve(
         let mut velocity = imposed.velocity.clone();
         if let (Some(single), Some(solver)) = (&imposed.single, class.free()) {
             velocity = velocity.plus(-1.0, &solver.single_layer(single));
-            copy_modes(&mut forced[layout.of(i)], &single.scaled_by_roots(discretization));
+            copy_modes(
+                &mut forced[layout.of(i)],
+                &single.scaled_by_roots(discretization),
+            );
         }
-        copy_modes(&mut data[layout.of(i)], &velocity.scaled_by_roots(discretization));
+        copy_modes(
+            &mut data[layout.of(i)],
+            &velocity.scaled_by_roots(discretization),
+        );
     }
     if forced.iter().any(|&x| x != 0.0) {
         let mut velocities = vec![0.0; layout.len()];
-        single_layers(bodies, &classes, care.product)?
-            .add_velocities(&forced, &mut velocities, care.product)?;
+        single_layers(bodies, &classes, care.product)?.add_velocities(
+            &forced,
+            &mut velocities,
+            care.product,
+        )?;
         for (data, velocity) in data.iter_mut().zip(&velocities) {
             *data -= velocity;
         }
@@ -211,6 +227,7 @@ pub(crate) fn solve(
     )?;
     let densities = system.solve_alone_of(&unknown);
     seconds.iterate = start.elapsed().as_secs_f64();
+    seconds.sum = system.interactions.seconds_of_sums;
     let mut solution = Solution {
         unknown: Vec::new(),
         layers: Vec::new(),
@@ -276,7 +293,8 @@ fn single_layers(
         let single = Tables::new(of.discretization.clone(), of.n_max, LayerWeights::SINGLE)?;
         Ok((class, Arc::new(single)))
     });
-    let tables: Vec<(&Arc<Class>, Arc<Tables>)> = tables.collect::<Result<_, InteractionError>>()?;
+    let tables: Vec<(&Arc<Class>, Arc<Tables>)> =
+        tables.collect::<Result<_, InteractionError>>()?;
     let members = (bodies.iter().enumerate()).filter_map(|(i, body)| {
         let mine = |(class, _): &&(&Arc<Class>, Arc<Tables>)| Arc::ptr_eq(class, classes.of(i));
         Some(Member {

@@ -4,13 +4,16 @@ use stokes_fmm::{Flow, FmmError, Output, Points, Singularities, StokesSum, Stren
 
 /// The least tolerance of a fast sum, and the largest that is worth having: beyond it sums become no cheaper.
 const TOLERANCES: [f64; 2] = [1e-12, 1e-3];
+/// Tolerances are taken in steps of this factor, so that plans last.
+const STEP: f64 = 100.0;
 /// Pairs up to which nothing is planned.
-const FEW: f64 = 3e7;
+const FEW: f64 = 1e8;
 
 /// Sums of one kind at various tolerances. What does not depend on the points is kept for each tolerance that was used.
 pub(crate) struct Sums {
     singularities: Singularities,
     output: Output,
+    best: f64,
     known: Vec<StokesSum>,
 }
 
@@ -19,15 +22,17 @@ pub(crate) struct Sums {
 pub(crate) struct Planned(Option<StokesSum>);
 
 impl Sums {
-    pub fn new(singularities: Singularities, output: Output) -> Self {
+    /// Sums to the tolerance `best` and looser ones.
+    pub fn new(singularities: Singularities, output: Output, best: f64) -> Self {
         Self {
             singularities,
             output,
+            best,
             known: Vec::new(),
         }
     }
 
-    /// The flow of `strengths` at the targets to a tolerance, rounded down to a whole digit so that plans last.
+    /// The flow of `strengths` at the targets to a tolerance, or somewhat better.
     pub fn apply(
         &mut self,
         planned: &mut Planned,
@@ -36,7 +41,8 @@ impl Sums {
         tolerance: f64,
     ) -> Result<Flow, FmmError> {
         let [least, largest] = TOLERANCES;
-        let tolerance = 10f64.powf(tolerance.log10().floor()).clamp(least, largest);
+        let steps = (tolerance / self.best).log(STEP).floor().max(0.0);
+        let tolerance = (self.best * STEP.powf(steps)).clamp(least, largest);
         let targets = points.targets.unwrap_or(points.sources);
         if points.sources.len() as f64 * targets.len() as f64 <= FEW {
             let tolerance = Some(tolerance);

@@ -38,7 +38,7 @@ use nalgebra::{Matrix3, Point3};
 
 use super::SuspensionError;
 use super::check::{Miss, misses};
-use super::class::{Kind, Role};
+use super::class::{Classes, Kind, Role};
 use super::contact::{Gap, Placed, gaps};
 use super::flow::{BodyLayers, SuspensionFlow};
 use super::resolution::{first, refined};
@@ -173,12 +173,16 @@ pub struct Answer {
 /// Wall-clock seconds, of the last solution but for `refine`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Timings {
-    /// Assembling and factoring the matrices of single bodies.
+    /// Assembling the matrices of single bodies, and all else that belongs to shapes.
+    pub assemble: f64,
+    /// Factoring them.
     pub factor: f64,
     /// Finding points near other bodies, and what is needed for them.
     pub near: f64,
     /// Iterating.
     pub iterate: f64,
+    /// Of that, summing over points.
+    pub sum: f64,
     /// Evaluating the flow at the targets.
     pub evaluate: f64,
     /// Estimating the error.
@@ -189,7 +193,7 @@ pub struct Timings {
 
 /// Residuals and products are better than the tolerance by these factors.
 const RESIDUAL: f64 = 0.1;
-const PRODUCT: f64 = 0.03;
+const PRODUCT: f64 = 0.04;
 /// How far the estimate stays above what the boundary velocity is off by.
 const SAFETY: f64 = 2.0;
 /// What is left to rounding.
@@ -199,8 +203,12 @@ const SMALL: f64 = 1e-2;
 /// Solutions, each finer than the one before, and how many in a row may gain less than a factor of two.
 const ROUNDS: usize = 10;
 const PATIENCE: usize = 1;
+/// Estimates that miss the tolerance by less may do so for other reasons than the resolution.
+const NEARLY: f64 = 10.0;
 /// Gaps of so many sizes of a body matter to its resolution.
-const REACH: f64 = 2.0;
+const REACH: f64 = 1.0;
+/// The largest tolerance to choose resolutions for.
+const COARSEST: f64 = 1e-2;
 /// An iteration that stagnates at so many times its residual has found what there is.
 const STALLED: f64 = 100.0;
 /// Least relative residual and product.
@@ -229,19 +237,13 @@ impl<'a> Suspension<'a> {
         progress: &dyn Progress,
     ) -> Result<Answer, SuspensionError> {
         let begin = Instant::now();
-        self.gaps(progress)?;
+        self.gaps(0.0, progress)?;
         let kinds = self.kinds(resolutions)?;
-        let budget = self.memory();
-        let needed = needed_memory(&kinds, &self.options);
-        if needed > budget {
-            return Err(SuspensionError::Memory {
-                what: "panels, order and modes by hand",
-                needed: gibibytes(needed),
-                budget: gibibytes(budget),
-            });
-        }
-        let round = self.round(&kinds, tolerance, None, progress)?;
-        self.answer(round, tolerance, 0, begin, progress)
+        self.check_memory(&kinds, "panels, order and modes by hand")?;
+        let known = Classes::default();
+        let round = self.round(&kinds, tolerance, &known, None, progress)?;
+        let products = round.solution.iteration.products;
+        self.answer(round, tolerance, products, begin, progress)
     }
 
     /// The answer to a tolerance: the first resolutions found whose error estimate is below it, or the best there are; compare
@@ -255,21 +257,47 @@ impl<'a> Suspension<'a> {
         progress: &dyn Progress,
     ) -> Result<Answer, SuspensionError> {
         let begin = Instant::now();
+        let start = self.start(tolerance, progress)?;
+        let Converged { best, products, .. } = self.converge(start, tolerance, progress)?;
+        self.answer(best, tolerance, products, begin, progress)
+    }
+
+    /// The first resolutions for a tolerance.
+    pub(crate) fn start(
+        &self,
+        tolerance: f64,
+        progress: &dyn Progress,
+    ) -> Result<Start, SuspensionError> {
         if self.bodies.is_empty() {
             return Err(SuspensionError::Empty);
         }
-        let gaps = self.gaps(progress)?;
-        let budget = self.memory();
-        let mut kinds = self.kinds(&first(self, &gaps, tolerance)?)?;
-        let needed = needed_memory(&kinds, &self.options);
-        if needed > budget {
-            return Err(SuspensionError::Memory {
-                what: "the resolutions that this tolerance would start with",
-                needed: gibibytes(needed),
-                budget: gibibytes(budget),
-            });
+        let gaps = self.gaps(REACH, progress)?;
+        // Where memory does not do for the tolerance, the best that it does for: the estimate will tell.
+        let mut looser = tolerance;
+        loop {
+            let kinds = self.kinds(&first(self, &gaps, looser)?)?;
+            match self.check_memory(&kinds, "the coarsest resolutions that make sense") {
+                Ok(()) => {
+                    return Ok(Start {
+                        kinds,
+                        known: Classes::default(),
+                    });
+                }
+                Err(error) if looser > COARSEST => return Err(error),
+                Err(_) => looser *= 10.0,
+            }
         }
-        let mut latest = self.round(&kinds, tolerance, None, progress)?;
+    }
+
+    /// Finer and finer solutions until the estimated error is below the tolerance or no longer falls.
+    pub(crate) fn converge(
+        &self,
+        start: Start,
+        tolerance: f64,
+        progress: &dyn Progress,
+    ) -> Result<Converged, SuspensionError> {
+        let Start { mut kinds, known } = start;
+        let mut latest = self.round(&kinds, tolerance, &known, None, progress)?;
         let mut products = 0;
         let mut best = latest.clone();
         let mut without_gain = 0;
@@ -278,24 +306,47 @@ impl<'a> Suspension<'a> {
                 break;
             }
             let worst = latest.misses.iter().map(|miss| miss.largest);
-            let worst = worst.fold(0.0, f64::max);
-            kinds = refined(&kinds, &latest.misses, worst * tolerance / latest.error_estimate);
-            if needed_memory(&kinds, &self.options) > budget {
+            let allowed = worst.fold(0.0, f64::max) * tolerance / latest.error_estimate;
+            let finer = refined(&kinds, &latest.misses, allowed);
+            if needed_memory(&finer, &self.options) > self.memory() {
                 break;
             }
+            kinds = finer;
             products += latest.solution.iteration.products;
-            latest = self.round(&kinds, tolerance, Some(&latest.solution), progress)?;
-            let gain = latest.error_estimate < 0.5 * best.error_estimate;
+            let known = &latest.solution.classes;
+            // What is left near the end may be of iteration and sums, too.
+            let missed = latest.error_estimate / tolerance;
+            let care = if missed < NEARLY { 0.5 * tolerance / missed } else { tolerance };
+            let next = self.round(&kinds, care, known, Some(&latest.solution), progress)?;
+            let gain = next.error_estimate < 0.5 * best.error_estimate;
             without_gain = if gain { 0 } else { without_gain + 1 };
-            if latest.error_estimate < best.error_estimate {
-                best = latest.clone();
+            if next.error_estimate < best.error_estimate {
+                best = next.clone();
             }
+            latest = next;
         }
-        self.answer(best, tolerance, products, begin, progress)
+        products += latest.solution.iteration.products;
+        Ok(Converged {
+            best,
+            kinds,
+            products,
+        })
     }
 
-    /// How far the bodies are apart; those that are near.
-    fn gaps(&self, progress: &dyn Progress) -> Result<Vec<Gap>, SuspensionError> {
+    fn check_memory(&self, kinds: &[Kind], what: &'static str) -> Result<(), SuspensionError> {
+        let (needed, budget) = (needed_memory(kinds, &self.options), self.memory());
+        if needed <= budget {
+            return Ok(());
+        }
+        Err(SuspensionError::Memory {
+            what,
+            needed: gibibytes(needed),
+            budget: gibibytes(budget),
+        })
+    }
+
+    /// How far the bodies are apart whose gap is below `reach` sizes; an error if any are not.
+    fn gaps(&self, reach: f64, progress: &dyn Progress) -> Result<Vec<Gap>, SuspensionError> {
         progress.begin("gaps", 0);
         let placed: Vec<Placed<'_>> = (self.bodies.iter())
             .map(|body| {
@@ -303,8 +354,7 @@ impl<'a> Suspension<'a> {
                 Placed {
                     curve: &*body.curve,
                     frame: body.frame,
-                    scale: 1.0,
-                    reach: REACH * extent * body.frame.scale(),
+                    reach: reach * extent * body.frame.scale(),
                 }
             })
             .collect();
@@ -339,7 +389,7 @@ impl<'a> Suspension<'a> {
         let residual = self.options.residual.unwrap_or(RESIDUAL * tolerance);
         Care {
             residual: residual.max(LEAST),
-            product: (PRODUCT * tolerance).min(0.3 * residual).max(LEAST),
+            product: (PRODUCT * tolerance).min(0.4 * residual).max(LEAST),
             memory,
         }
     }
@@ -349,14 +399,24 @@ impl<'a> Suspension<'a> {
         &self,
         kinds: &[Kind],
         tolerance: f64,
+        known: &Classes,
         before: Option<&Solution>,
         progress: &dyn Progress,
     ) -> Result<Round, SuspensionError> {
-        let rest = self.memory().saturating_sub(needed_memory(kinds, &self.options));
+        let rest = self
+            .memory()
+            .saturating_sub(needed_memory(kinds, &self.options));
         let care = self.care(tolerance, rest);
-        let (solution, imposed) = solve(self, kinds, care, before, progress)?;
-        let Iteration { iterations, residual, stop, .. } = solution.iteration;
-        if stop != Stop::Converged && !(stop == Stop::Stagnated && residual <= STALLED * care.residual) {
+        let (solution, imposed) = solve(self, kinds, care, known, before, progress)?;
+        let Iteration {
+            iterations,
+            residual,
+            stop,
+            ..
+        } = solution.iteration;
+        if stop != Stop::Converged
+            && !(stop == Stop::Stagnated && residual <= STALLED * care.residual)
+        {
             return Err(SuspensionError::NotConverged {
                 iterations,
                 residual,
@@ -409,8 +469,7 @@ impl<'a> Suspension<'a> {
         let mut scale = 0.0f64;
         for (i, body) in self.bodies.iter().enumerate() {
             if let Motion::Given(_) = body.motion {
-                let size =
-                    body.frame.scale() * solution.classes.of(i).tables.discretization.size();
+                let size = body.frame.scale() * solution.classes.of(i).tables.discretization.size();
                 let wrench = body.frame.wrench_to_lab(solution.wrenches[i]);
                 let found = wrench.force.norm().max(wrench.torque.norm() / size);
                 force = force.max(6.0 * PI * size * misses[i].largest);
@@ -469,27 +528,38 @@ impl<'a> Suspension<'a> {
         let targets = if self.targets.is_empty() {
             Vec::new()
         } else {
-            flow.evaluate(self.targets, evaluation_tolerance(Some(tolerance)), progress)?
+            flow.evaluate(
+                self.targets,
+                evaluation_tolerance(Some(tolerance)),
+                progress,
+            )?
         };
         let evaluate = start.elapsed().as_secs_f64();
         let seconds = solution.seconds;
-        let own = seconds.factor + seconds.near + seconds.iterate + evaluate + estimate;
+        let own = seconds.assemble
+            + seconds.factor
+            + seconds.near
+            + seconds.iterate
+            + evaluate
+            + estimate;
         Ok(Answer {
             bodies: bodies.collect(),
             targets,
             flow,
             error_estimate,
             largest_speed: speed,
-            products: products + solution.iteration.products,
+            products,
             unknowns: solution.unknowns,
             points: solution.points,
             near: (solution.near_points, solution.near_bytes),
             classes: solution.classes.len(),
             iteration: solution.iteration,
             timings: Timings {
+                assemble: seconds.assemble,
                 factor: seconds.factor,
                 near: seconds.near,
                 iterate: seconds.iterate,
+                sum: seconds.sum,
                 evaluate,
                 estimate,
                 refine: begin.elapsed().as_secs_f64() - own,
@@ -546,12 +616,36 @@ fn extent(curve: &dyn GeneratingCurve) -> f64 {
     far.fold(0.0, f64::max)
 }
 
+/// Where to begin.
+pub(crate) struct Start {
+    kinds: Vec<Kind>,
+    /// What is factored already.
+    known: Classes,
+}
+
+/// Where it ended.
+pub(crate) struct Converged {
+    pub best: Round,
+    kinds: Vec<Kind>,
+    products: usize,
+}
+
+impl Converged {
+    /// To go on with the next question about the same bodies.
+    pub fn into_start(self) -> Start {
+        Start {
+            kinds: self.kinds,
+            known: self.best.solution.classes,
+        }
+    }
+}
+
 /// A solution with what is known of its error.
 #[derive(Clone, Debug)]
-struct Round {
-    solution: Solution,
+pub(crate) struct Round {
+    pub solution: Solution,
     misses: Vec<Miss>,
-    error_estimate: f64,
+    pub error_estimate: f64,
     speed: f64,
     estimate: f64,
 }

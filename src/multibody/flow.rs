@@ -121,7 +121,11 @@ impl SuspensionFlow {
         let mut own = Vec::with_capacity(bodies.len());
         let mut left_out = vec![0..0; flows.len()];
         for &body in bodies {
-            let BodyLayers { frame, discretization, .. } = &self.bodies[body];
+            let BodyLayers {
+                frame,
+                discretization,
+                ..
+            } = &self.bodies[body];
             let points = ring_points(discretization, flows[body].azimuths()?);
             let first = targets.len();
             targets.extend(points.iter().map(|&x| frame.point_to_lab(x)));
@@ -134,7 +138,11 @@ impl SuspensionFlow {
         }
         self.correct::<true>(flows, &targets, tolerance, &left_out, &mut found)?;
         let tractions = bodies.iter().zip(own).map(|(&body, points)| {
-            let BodyLayers { frame, discretization, .. } = &self.bodies[body];
+            let BodyLayers {
+                frame,
+                discretization,
+                ..
+            } = &self.bodies[body];
             let flow = &flows[body];
             let mut of_own = flow.of_points(&points)?.into_iter();
             let mut found = found[left_out[body].clone()].iter();
@@ -157,7 +165,9 @@ impl SuspensionFlow {
 
     fn flows(&self) -> Vec<Flow<'_>> {
         let flows = self.bodies.iter();
-        flows.map(|body| Flow::new(&body.discretization, body.layers.clone())).collect()
+        flows
+            .map(|body| Flow::new(&body.discretization, body.layers.clone()))
+            .collect()
     }
 
     fn sum<const GRADIENT: bool>(
@@ -210,7 +220,9 @@ impl SuspensionFlow {
             let (indices, near): (Vec<usize>, Vec<Point3<f64>>) = near.unzip();
             let corrections = flow.corrections::<GRADIENT>(&near, tolerance)?;
             let corrections = corrections.into_iter();
-            Ok(corrections.map(|(place, at)| (indices[place], in_lab(frame, at))).collect())
+            Ok(corrections
+                .map(|(place, at)| (indices[place], in_lab(frame, at)))
+                .collect())
         });
         for of_body in corrections.collect::<Result<Vec<Vec<_>>, FlowError>>()? {
             for (index, correction) in of_body {

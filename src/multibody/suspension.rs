@@ -316,7 +316,11 @@ impl<'a> Suspension<'a> {
             let known = &latest.solution.classes;
             // What is left near the end may be of iteration and sums, too.
             let missed = latest.error_estimate / tolerance;
-            let care = if missed < NEARLY { 0.5 * tolerance / missed } else { tolerance };
+            let care = if missed < NEARLY {
+                0.5 * tolerance / missed
+            } else {
+                tolerance
+            };
             let next = self.round(&kinds, care, known, Some(&latest.solution), progress)?;
             let gain = next.error_estimate < 0.5 * best.error_estimate;
             without_gain = if gain { 0 } else { without_gain + 1 };

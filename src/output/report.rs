@@ -140,7 +140,11 @@ impl Report {
             if !body.stresslet_error_estimate.is_finite() {
                 return Some(format!("bodies[{i}].stresslet_error_estimate"));
             }
-            if [body.power, body.power_error_estimate].iter().flatten().any(|x| !x.is_finite()) {
+            if [body.power, body.power_error_estimate]
+                .iter()
+                .flatten()
+                .any(|x| !x.is_finite())
+            {
                 return Some(format!("bodies[{i}].power"));
             }
         }

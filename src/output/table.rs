@@ -40,9 +40,15 @@ fn write_table(out: &mut String, case: &Case, report: &Report, all: bool) -> fmt
     let solve = match stop {
         Stop::Direct => "direct solve".to_owned(),
         Stop::Converged | Stop::Stagnated => {
-            let how = if stop == Stop::Converged { "to" } else { "stagnated at" };
+            let how = if stop == Stop::Converged {
+                "to"
+            } else {
+                "stagnated at"
+            };
             let (iterations, products) = (report.iterations, report.products);
-            format!("{iterations} iterations {how} a residual of {residual:.1e}, {products} products")
+            format!(
+                "{iterations} iterations {how} a residual of {residual:.1e}, {products} products"
+            )
         }
     };
     let points = report.points.map(|points| format!(", {points} points"));
@@ -156,8 +162,11 @@ fn write_summary(out: &mut String, report: &Report) -> fmt::Result {
     for (quantity, magnitude) in rows {
         let values: Vec<f64> = bodies.iter().map(magnitude).collect();
         let order = |&i: &usize, &j: &usize| values[i].total_cmp(&values[j]).then(j.cmp(&i));
-        let [least, most] = [(0..values.len()).min_by(order), (0..values.len()).max_by(order)]
-            .map(Option::unwrap_or_default);
+        let [least, most] = [
+            (0..values.len()).min_by(order),
+            (0..values.len()).max_by(order),
+        ]
+        .map(Option::unwrap_or_default);
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         writeln!(
             out,
@@ -205,7 +214,10 @@ fn write_discretization(out: &mut String, shapes: &[Discretization]) -> fmt::Res
     let widest = shapes.iter().map(|d| d.shape.chars().count());
     let width = widest.max().unwrap_or(0).max("shape".len());
     // Of one body there is nothing to count.
-    let counts = shapes.iter().any(|d| d.bodies.is_some_and(|bodies| bodies > 1)) || shapes.len() > 1;
+    let counts = shapes
+        .iter()
+        .any(|d| d.bodies.is_some_and(|bodies| bodies > 1))
+        || shapes.len() > 1;
     let head = if counts { "  bodies" } else { "" };
     writeln!(
         out,

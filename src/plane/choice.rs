@@ -80,11 +80,17 @@ fn around(
         })
     });
     let middle = |[from, to]: [f64; 2]| 0.5 * (from + to);
-    let depths = bodies.iter().map(|body| Vector3::from(body.center).dot(&normal));
+    let depths = bodies
+        .iter()
+        .map(|body| Vector3::from(body.center).dot(&normal));
     let nearest = depths.min_by(|a, b| {
         let [a, b] = [a, b].map(|depth_of_body| (depth_of_body - middle(depth)).abs());
         // Of two as far on either side the first one, whatever rounding says.
-        if (a - b).abs() <= PARALLEL * largest { Ordering::Equal } else { a.total_cmp(&b) }
+        if (a - b).abs() <= PARALLEL * largest {
+            Ordering::Equal
+        } else {
+            a.total_cmp(&b)
+        }
     });
     let center = *across * middle(width) + *up * middle(height) + normal * nearest.unwrap_or(0.0);
     let size = [width, height].map(|[from, to]| to - from + 4.0 * largest);
@@ -99,11 +105,20 @@ fn normal_of_many(case: &Case) -> Unit<Vector3<f64>> {
     let background = background(case);
     let acting: Vec<Vector3<f64>> = case.bodies.iter().map(|body| acting(body)[0]).collect();
     let mean = acting.iter().sum::<Vector3<f64>>() / acting.len() as f64;
-    let largest = acting.iter().copied().max_by(|a, b| a.norm().total_cmp(&b.norm()));
+    let largest = acting
+        .iter()
+        .copied()
+        .max_by(|a, b| a.norm().total_cmp(&b.norm()));
     let largest = largest.unwrap_or_default();
     // Forces that cancel still act.
-    let mean = if mean.norm() > PARALLEL * largest.norm() { mean } else { largest };
-    let mut straight = std::iter::once(mean).chain(background).filter(|v| *v != Vector3::zeros());
+    let mean = if mean.norm() > PARALLEL * largest.norm() {
+        mean
+    } else {
+        largest
+    };
+    let mut straight = std::iter::once(mean)
+        .chain(background)
+        .filter(|v| *v != Vector3::zeros());
     let first = straight.next().map(Unit::new_normalize);
     if let Some(first) = first {
         let across = |v: Vector3<f64>| {
@@ -126,7 +141,10 @@ fn flattest(case: &Case, orthogonal: Option<Unit<Vector3<f64>>>) -> Unit<Vector3
         Some(n) => v - *n * n.dot(&v),
         None => v,
     };
-    let spread: Matrix3<f64> = centers.iter().map(|c| (c - middle) * (c - middle).transpose()).sum();
+    let spread: Matrix3<f64> = centers
+        .iter()
+        .map(|c| (c - middle) * (c - middle).transpose())
+        .sum();
     let scale = spread.trace().max(f64::MIN_POSITIVE);
     // A little is added where a direction is liked less, and much along the one that is ruled out.
     let liking = Matrix3::from_diagonal(&Vector3::new(2.0, 0.0, 1.0)) * (LIKING * scale);
@@ -295,9 +313,13 @@ mod tests {
         let cube: Vec<_> = corners.map(|corner| (corner, down)).collect();
         let cube = of_many(&cube, "");
         along(&cube, [x, z]);
-        assert!((cube.center - Point3::new(1.5, 0.0, 1.5)).norm() < 1e-14, "{cube:?}");
+        assert!(
+            (cube.center - Point3::new(1.5, 0.0, 1.5)).norm() < 1e-14,
+            "{cube:?}"
+        );
         // In a shear flow, the plane of shear.
-        let shear = "[background]\nkind = 'shear'\nrate = 1\nflow = [0, 0, 1]\ngradient = [0, 1, 0]";
+        let shear =
+            "[background]\nkind = 'shear'\nrate = 1\nflow = [0, 0, 1]\ngradient = [0, 1, 0]";
         let sheared = of_many(&[([0.0; 3], ""), ([3.0, 0.0, 0.0], "")], shear);
         along(&sheared, [y, z]);
     }

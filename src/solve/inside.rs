@@ -35,7 +35,9 @@ impl<'a> Insides<'a> {
             bodies: Vec::new(),
         };
         for (index, (curve, frame)) in bodies.enumerate() {
-            let known = curves.iter().position(|(known, _)| Arc::ptr_eq(known, curve));
+            let known = curves
+                .iter()
+                .position(|(known, _)| Arc::ptr_eq(known, curve));
             let outline = match known {
                 Some(outline) => outline,
                 None => {
@@ -60,7 +62,11 @@ impl<'a> Insides<'a> {
     /// The first body that a point is inside of.
     pub fn body_at(&self, point: Point3<f64>) -> Option<usize> {
         let contains = |place: &Place| {
-            let Place { frame, outline, radius } = place;
+            let Place {
+                frame,
+                outline,
+                radius,
+            } = place;
             (point - frame.center()).norm() <= *radius
                 && self.outlines[*outline].contains(meridian(&frame.point_to_body(point)))
         };

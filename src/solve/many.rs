@@ -20,10 +20,7 @@ use crate::progress::Progress;
 const BY_HAND: f64 = 1e-10;
 
 /// Solves a case of more than one body.
-pub(super) fn solve(
-    setting: &Setting<'_>,
-    progress: &dyn Progress,
-) -> Result<Solved, SolveError> {
+pub(super) fn solve(setting: &Setting<'_>, progress: &dyn Progress) -> Result<Solved, SolveError> {
     let case = setting.case;
     let bodies = setting.bodies.iter().map(|placed| Body {
         curve: placed.curve.clone(),
@@ -71,7 +68,10 @@ fn options(case: &Case) -> Options {
         },
         max_iterations: case.solver.max_iterations,
         residual: case.solver.tolerance,
-        memory: case.solver.memory.map(|gib| (gib * f64::from(1 << 30)) as usize),
+        memory: case
+            .solver
+            .memory
+            .map(|gib| (gib * f64::from(1 << 30)) as usize),
         ..default
     }
 }
@@ -108,7 +108,11 @@ fn by_hand(
 
 /// The bodies' surfaces as they move.
 fn surfaces(setting: &Setting<'_>, answer: &Answer) -> Vec<SolvedBody> {
-    let bodies = setting.bodies.iter().zip(&answer.bodies).zip(&answer.flow.bodies);
+    let bodies = setting
+        .bodies
+        .iter()
+        .zip(&answer.bodies)
+        .zip(&answer.flow.bodies);
     let surface = bodies.map(|((placed, found), layers)| {
         let discretization = &layers.discretization;
         let motion = placed.frame.motion_to_body(found.motion).on(discretization);
@@ -140,21 +144,26 @@ fn report(
 ) -> Result<Report, SolveError> {
     let failed = |error| explain(setting, error);
     let slips = of_slips(setting, answer, tolerance, progress).map_err(failed)?;
-    let found = answer.bodies.iter().zip(slips).enumerate().map(|(i, (body, of_slip))| {
-        let wrench = body.wrench;
-        let of_motion = wrench.force.dot(&body.motion.velocity)
-            + wrench.torque.dot(&body.motion.angular_velocity);
-        let known = setting.case.test.is_none();
-        let slips = setting.bodies[i].slip.is_some();
-        Found {
-            motion: body.motion,
-            wrench,
-            stresslet: body.stresslet,
-            stresslet_error: answer.stresslet_error(i),
-            power: known.then_some(of_motion + of_slip),
-            power_error: (known && !slips).then(|| answer.power_error(i)),
-        }
-    });
+    let found = answer
+        .bodies
+        .iter()
+        .zip(slips)
+        .enumerate()
+        .map(|(i, (body, of_slip))| {
+            let wrench = body.wrench;
+            let of_motion = wrench.force.dot(&body.motion.velocity)
+                + wrench.torque.dot(&body.motion.angular_velocity);
+            let known = setting.case.test.is_none();
+            let slips = setting.bodies[i].slip.is_some();
+            Found {
+                motion: body.motion,
+                wrench,
+                stresslet: body.stresslet,
+                stresslet_error: answer.stresslet_error(i),
+                power: known.then_some(of_motion + of_slip),
+                power_error: (known && !slips).then(|| answer.power_error(i)),
+            }
+        });
     let bodies = setting.body_reports(found);
     let probes = setting.probe_reports(answer.targets.iter().copied());
     let t = answer.timings;

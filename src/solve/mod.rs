@@ -92,7 +92,10 @@ impl Solved {
         let insides = Insides::new(bodies.map(|body| (body.discretization.curve(), body.frame)))
             .map_err(|(_, error)| failed(error))?;
         let is_outside = |&place: &usize| insides.body_at(points[place]).is_none();
-        let places: Vec<usize> = (0..points.len()).into_par_iter().filter(is_outside).collect();
+        let places: Vec<usize> = (0..points.len())
+            .into_par_iter()
+            .filter(is_outside)
+            .collect();
         let targets = places.iter().map(|&place| points[place]);
         let mut flow = vec![None; points.len()];
         let found: Vec<FlowAt> = match &self.flow {
@@ -141,7 +144,9 @@ impl Solved {
             }
         };
         let tractions = of_unit_viscosity.iter();
-        Ok(tractions.map(|traction| traction.scaled(self.viscosity)).collect())
+        Ok(tractions
+            .map(|traction| traction.scaled(self.viscosity))
+            .collect())
     }
 }
 

@@ -82,13 +82,20 @@ impl<'a> Setting<'a> {
 
     fn check_points(&self) -> Result<(), CaseError> {
         let case = self.case;
-        let bodies = self.bodies.iter().map(|placed| (&placed.curve, placed.frame));
+        let bodies = self
+            .bodies
+            .iter()
+            .map(|placed| (&placed.curve, placed.frame));
         let insides = Insides::new(bodies)
             .map_err(|(body, error)| at_shape(case, self.bodies[body].body, &error))?;
         let one = self.bodies.len() == 1;
         for probe in &case.probes {
             if let Some(body) = insides.body_at(probe.value.into()) {
-                let name = if one { "the body".into() } else { self.name(body) };
+                let name = if one {
+                    "the body".into()
+                } else {
+                    self.name(body)
+                };
                 let message = format!(
                     "probes.points: {:?} lies inside {name}: expected a point in the fluid",
                     probe.value
@@ -232,9 +239,8 @@ impl<'a> Setting<'a> {
         let mut known: Vec<(&str, &Resolution, usize)> = Vec::new();
         for (placed, resolution) in self.bodies.iter().zip(resolutions) {
             let shape = &*placed.body.shape;
-            let same = |entry: &&mut (&str, &Resolution, usize)| {
-                entry.0 == shape && entry.1 == resolution
-            };
+            let same =
+                |entry: &&mut (&str, &Resolution, usize)| entry.0 == shape && entry.1 == resolution;
             match known.iter_mut().find(same) {
                 Some((.., bodies)) => *bodies += 1,
                 None => known.push((shape, resolution, 1)),

@@ -5,7 +5,9 @@ use panel_quadrature::QuadratureError;
 
 use super::setting::{Found, Setting};
 use super::{SolveError, Solved, SolvedBody, Whole, formulation};
-use crate::body::problem::{Answer, Motion, Problem, ProblemError, Resolution, evaluation_tolerance};
+use crate::body::problem::{
+    Answer, Motion, Problem, ProblemError, Resolution, evaluation_tolerance,
+};
 use crate::case::Accuracy;
 use crate::curve::Panels;
 use crate::kernel::FlowAt;
@@ -13,10 +15,7 @@ use crate::output::{Report, Stop, Timings};
 use crate::progress::Progress;
 
 /// Solves a case of one body.
-pub(super) fn solve(
-    setting: &Setting<'_>,
-    progress: &dyn Progress,
-) -> Result<Solved, SolveError> {
+pub(super) fn solve(setting: &Setting<'_>, progress: &dyn Progress) -> Result<Solved, SolveError> {
     let (case, placed) = (setting.case, &setting.bodies[0]);
     let frame = placed.frame;
     let probes = setting.probes.iter();
@@ -116,4 +115,3 @@ fn report(setting: &Setting<'_>, answer: &Answer) -> Result<Report, SolveError> 
         },
     })
 }
-

@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 use nalgebra::{Point3, Vector3};
 use panel_quadrature::QuadratureError;
 use vtkio::model::{
-    Attribute, Attributes, CellType, Cells, DataArray, DataSet, Piece, UnstructuredGridPiece, VertexNumbers,
+    Attribute, Attributes, CellType, Cells, DataArray, DataSet, Piece, UnstructuredGridPiece,
+    VertexNumbers,
 };
 
 use super::{VtkError, bytes, flat, vectors};
@@ -133,9 +134,7 @@ impl Surface {
                     vectors("traction", &self.traction),
                     vectors("velocity", &self.velocity),
                     vectors("normal", &self.normals),
-                    Attribute::DataArray(
-                        DataArray::scalars("body", 1).with_vec(self.body.clone()),
-                    ),
+                    Attribute::DataArray(DataArray::scalars("body", 1).with_vec(self.body.clone())),
                 ],
                 cell: Vec::new(),
             },

@@ -61,14 +61,14 @@
 //! | [`kernel`] | kernels of the layer potentials, in free space and mode by mode: signs and scaling |
 //! | [`curve`] | generating curves and panels on them |
 //! | [`body`] | matrices, factors, boundary problems and flow of one body, in its own frame and for viscosity 1 |
+//! | [`krylov`] | Krylov methods for operators known by their products |
+//! | [`multibody`] | suspensions: many bodies, their interactions, gaps and contact, in the laboratory and for viscosity 1 |
 //! | [`case`] | case files |
 //! | [`output`] | reports as tables and JSON, plots; on top of [`plane`], pictures and VTK files |
 //! | [`mod@solve`] | from a case to its report: frames and viscosity |
 //! | [`plane`] | the flow in a plane: grids, sections, streamlines |
 //! | [`mod@resistance`] | from a case to the resistance of its shapes |
 //! | [`study`] | the convergence study |
-//! | [`krylov`] | Krylov methods for operators known by their products |
-//! | [`multibody`] | suspensions: many bodies, their interactions, gaps and contact |
 //! | [`progress`] | how a long computation tells where it is |
 //!
 //! The types of most programs are here at the root too, and [`nalgebra`], whose vectors and points they take.

@@ -444,14 +444,6 @@ fn what_is_not_built_is_refused_by_name() {
                 "not supported yet: the single-layer formulation of a free body",
             ],
         ),
-        (
-            "[accuracy]",
-            "[[bodies]]\nshape = \"ball\"\ncenter = [3, 0, 0]\n[accuracy]",
-            &[
-                "case.toml:11:",
-                "not supported yet: more than one body (2 given)",
-            ],
-        ),
         // an error inside a section that is not built comes first
         (
             "[probes]",

@@ -35,8 +35,8 @@ fn the_surface_is_that_of_the_body_and_moves_with_it() {
     let (case, solved) = solved("oblique-spheroid.toml");
     let body = &case.bodies[0];
     let [center, axis] = [body.center, body.axis].map(Vector3::from);
-    let surface = Surface::of(&solved.bodies[0], 8).expect("a surface");
-    let nodes = solved.bodies[0].flow().discretization.nodes().len();
+    let surface = Surface::of(&solved, |_| 8, &Silent).expect("a surface");
+    let nodes = solved.bodies[0].discretization().nodes().len();
     // The poles come last.
     assert_eq!(surface.points.len(), 8 * nodes + 2);
     for (k, point) in surface.points.iter().enumerate() {
@@ -55,7 +55,7 @@ fn the_surface_is_that_of_the_body_and_moves_with_it() {
 #[test]
 fn the_traction_of_a_sphere_is_uniform() {
     let (case, solved) = solved("sphere-drag.toml");
-    let surface = Surface::of(&solved.bodies[0], 5).expect("a surface");
+    let surface = Surface::of(&solved, |_| 5, &Silent).expect("a surface");
     for traction in surface.traction {
         let exact: Vector3<f64> = -1.5 * case.viscosity * Vector3::z();
         assert!((traction - exact).norm() < 1e-11, "{traction}");

@@ -92,7 +92,7 @@ fn read_surface(bytes: &[u8]) -> Mesh {
 }
 
 fn mesh(solved: &Solved, azimuths: usize) -> Mesh {
-    let surface = Surface::of(&solved.bodies[0], azimuths).expect("a surface");
+    let surface = Surface::of(solved, |_| azimuths, &Silent).expect("a surface");
     read_surface(&surface.file().expect("a file"))
 }
 
@@ -239,9 +239,9 @@ fn the_command_writes_surface_and_plane() {
         .map(|entry| entry.expect("an entry").file_name())
         .collect();
     names.sort();
-    assert_eq!(names, ["ball-body-1.vtu", "ball-plane.vts"]);
+    assert_eq!(names, ["ball-bodies.vtu", "ball-plane.vts"]);
 
-    let bytes = fs::read(folder.join("a/b/ball-body-1.vtu")).expect("the surface");
+    let bytes = fs::read(folder.join("a/b/ball-bodies.vtu")).expect("the surface");
     assert_eq!(read_surface(&bytes).euler_characteristic(), 2);
 
     let bytes = fs::read(folder.join("a/b/ball-plane.vts")).expect("the plane");

@@ -204,6 +204,8 @@ const SMALL: f64 = 1e-2;
 /// Solutions, each finer than the one before, and how many in a row may gain less than a factor of two.
 const ROUNDS: usize = 10;
 const PATIENCE: usize = 1;
+/// Estimates that miss the tolerance by less may do so for other reasons than the resolution.
+const NEARLY: f64 = 10.0;
 /// Gaps of so many sizes of a body matter to its resolution.
 const REACH: f64 = 1.0;
 /// The largest tolerance to choose resolutions for.
@@ -324,9 +326,16 @@ impl<'a> Suspension<'a> {
             kinds = finer;
             products += latest.solution.iteration.products;
             let known = &latest.solution.classes;
+            // What is left near the end may be of iteration and sums, too.
+            let missed = latest.error_estimate / tolerance;
+            let care = if missed < NEARLY {
+                0.5 * tolerance / missed
+            } else {
+                tolerance
+            };
             let next = self.round(
                 &kinds,
-                tolerance,
+                care,
                 known,
                 Some(&latest.solution),
                 &operators,

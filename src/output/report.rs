@@ -99,9 +99,9 @@ pub enum Stop {
 /// Seconds of wall clock spent in each stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Timings {
-    /// Assembling the modal matrices; of many bodies, finding what is near each other.
+    /// Assembling the modal matrices; of many bodies, finding what is near each other too.
     pub assemble: f64,
-    /// Factoring them; of many bodies, assembling them too.
+    /// Factoring them.
     pub factor: f64,
     /// Solving: substitutions, or iterations.
     pub iterate: f64,

@@ -184,7 +184,7 @@ fn report(
         points: Some(answer.points),
         discretization: setting.discretizations(answer.bodies.iter().map(|b| &b.resolution)),
         timings: Timings {
-            assemble: t.near,
+            assemble: t.assemble + t.near,
             factor: t.factor,
             iterate: t.iterate,
             evaluate: t.evaluate,

@@ -14,6 +14,7 @@ use rustfft::{Fft, FftPlanner};
 
 use super::densities::Densities;
 use super::discretization::Discretization;
+use super::linear_flow::LAST_MODE;
 use super::near::{bend, bernstein};
 use super::surface::azimuths;
 use crate::curve::Meridian;
@@ -105,24 +106,28 @@ impl Separation {
         }
     }
 
-    /// The same for any density that so many modes and the nodes of the panels just resolve to the tolerance.
+    /// The same for any density that so many modes and the nodes of the panels just resolve to the tolerance. The modes of rigid motions and
+    /// linear flows may all be as large as the largest.
     pub fn of_resolved(
         discretization: &Discretization,
         n_max: usize,
         azimuths: usize,
         tolerance: f64,
     ) -> Self {
-        let steady = |count: usize| -> Vec<f64> {
+        let steady = |count: usize, from: usize| -> Vec<f64> {
             (0..count)
-                .map(|k| tolerance.ln() * k as f64 / count as f64)
+                .map(|k| {
+                    let beyond = k.saturating_sub(from) as f64;
+                    tolerance.ln() * beyond / count.saturating_sub(from).max(1) as f64
+                })
                 .collect()
         };
-        let along = steady(discretization.order());
+        let along = steady(discretization.order(), 0);
         let panels = discretization.panels().len();
         Self::new(
             tolerance,
             azimuths,
-            &steady(n_max + 1),
+            &steady(n_max + 1, LAST_MODE),
             std::iter::repeat_n(&along[..], panels),
         )
     }

@@ -5,12 +5,12 @@ use std::sync::Arc;
 use axistokes::krylov::Method;
 use axistokes::multibody::SuspensionError;
 use axistokes::multibody::suspension::{Answer, Options};
-use axistokes::{Body, Formulation, Frame, Silent, Suspension};
+use axistokes::{Body, Formulation, Frame, Panels, Resolution, Silent, Suspension};
 use nalgebra::Point3;
 
 use super::common::{direction, moving, pushed, random, spheroid};
 
-const TOLERANCE: f64 = 1e-7;
+const TOLERANCE: f64 = 1e-6;
 
 /// Four bodies near each other: three that move as they are told, one that is pushed.
 fn four() -> Suspension<'static> {
@@ -18,9 +18,9 @@ fn four() -> Suspension<'static> {
     let curves = [spheroid(1.0, 0.5), spheroid(0.5, 1.0)];
     let places = [
         [0.0, 0.0, 0.0],
-        [2.1, 0.0, 0.0],
-        [0.0, 2.1, 0.0],
-        [0.0, 0.0, 2.1],
+        [2.6, 0.0, 0.0],
+        [0.0, 2.6, 0.0],
+        [0.0, 0.0, 2.6],
     ];
     let bodies = places.iter().enumerate().map(|(k, &place)| Body {
         motion: if k == 3 {
@@ -54,10 +54,18 @@ fn difference(a: &Answer, b: &Answer) -> f64 {
 #[test]
 fn agree() {
     let four = four();
-    let reference = four.to_tolerance(TOLERANCE, &Silent).expect("an answer");
-    let resolutions: Vec<_> = (reference.bodies.iter())
-        .map(|b| Arc::new(b.resolution.clone()))
+    let resolutions: Vec<_> = (four.bodies.iter())
+        .map(|body| {
+            Arc::new(Resolution {
+                panels: Panels::equal_arcs(&*body.curve, 4).expect("panels"),
+                order: 12,
+                modes: 8,
+            })
+        })
         .collect();
+    let reference = four
+        .at_resolutions(&resolutions, TOLERANCE, &Silent)
+        .expect("an answer");
     let defaults = Options::default();
     let with = |options: Options| Suspension {
         options,
@@ -128,17 +136,21 @@ fn agree() {
         ),
     ];
     for (name, suspension) in &variants {
-        let answer = suspension.at_resolutions(&resolutions, TOLERANCE, &Silent);
-        match answer {
-            Ok(answer) => println!(
-                "{name}: {:.1e}, estimate {:.1e}, {} iterations, {} products, {} bytes near",
-                difference(&answer, &reference),
-                answer.error_estimate,
-                answer.iteration.iterations,
-                answer.products,
-                answer.near.1
-            ),
-            Err(error) => println!("{name}: {error}"),
-        }
+        let answer = suspension
+            .at_resolutions(&resolutions, TOLERANCE, &Silent)
+            .expect("an answer");
+        let difference = difference(&answer, &reference);
+        println!(
+            "{name}: {difference:.1e}, estimate {:.1e}, {} iterations, {} products, {} bytes near",
+            answer.error_estimate, answer.iteration.iterations, answer.products, answer.near.1
+        );
+        // The other equation is discretised with its own error.
+        let bar = if *name == "single layer" {
+            reference.error_estimate
+        } else {
+            TOLERANCE
+        };
+        assert!(difference <= bar);
+        assert!(*name != "little memory" || (answer.near.1 == 0 && reference.near.1 > 0));
     }
 }

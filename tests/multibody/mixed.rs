@@ -13,8 +13,8 @@ fn three() -> Vec<Body<'static>> {
     let mut rng = fastrand::Rng::with_seed(11);
     let places = [
         Point3::origin(),
-        Point3::new(1.4, 0.5, 0.3),
-        Point3::new(-0.2, 0.3, 2.0),
+        Point3::new(2.2, 0.8, 0.3),
+        Point3::new(-0.2, 0.3, 2.4),
     ];
     let curves = [spheroid(1.0, 0.5), spheroid(0.5, 0.8), ball()];
     let frames = places.map(|center| Frame::new(center, direction(&mut rng)));
@@ -39,7 +39,7 @@ fn motions_that_were_found_give_back_the_forces() {
         background,
         ..Suspension::new(bodies.clone())
     };
-    let tolerance = 1e-9;
+    let tolerance = 1e-4;
     let free = answer(&mixed, tolerance);
     for (body, found) in bodies.iter_mut().zip(&free.bodies) {
         body.motion = Motion::Given(found.motion);
@@ -73,6 +73,7 @@ fn motions_that_were_found_give_back_the_forces() {
         free.error_estimate,
         held.error_estimate
     );
+    assert!(error <= tolerance);
 }
 
 /// What the forces and torques of one answer would do at the velocities of the other.
@@ -99,9 +100,10 @@ fn two_mixed_problems_are_reciprocal() {
                 pushed(20.0 * random(&mut rng), 20.0 * random(&mut rng))
             };
         }
-        answer(&Suspension::new(bodies), 1e-9)
+        answer(&Suspension::new(bodies), 1e-4)
     });
     let ((one, of_one), (other, _)) = (power(&first, &second), power(&second, &first));
+    assert!((one - other).abs() <= 1e-4 * of_one);
     println!("{one} {other}: {:.1e}", (one - other).abs() / of_one);
 }
 
@@ -130,6 +132,8 @@ fn squirmers_far_apart_swim_as_alone() {
         "squirmers {errors:?}, estimate {:.1e}",
         answer.error_estimate
     );
+    // Left out: terms of the fourth power.
+    assert!(errors.iter().all(|&error| error <= 2e-11));
 }
 
 /// In a shear, a pair of free spheres far apart turns with half the vorticity and drifts with the flow at its centres.
@@ -137,7 +141,7 @@ fn squirmers_far_apart_swim_as_alone() {
 fn free_spheres_far_apart_turn_with_the_fluid() {
     let background = LinearFlow::shear(0.8, Vector3::x(), Vector3::y());
     let r = 1000.0;
-    let line = Unit::new_normalize(Vector3::new(1.0, 1.0, 0.0));
+    let line = Unit::new_normalize(Vector3::new(1.0, 0.5, 0.0));
     let mut rng = fastrand::Rng::with_seed(4);
     let free = [0.0, r].map(|s| Body {
         motion: Motion::Free(axistokes::Wrench::zero()),
@@ -163,7 +167,7 @@ fn free_spheres_far_apart_turn_with_the_fluid() {
         };
         let strained = rate * d;
         let induced = -2.5 * d.dot(&strained) * d / (r * r);
-        let turning = -2.5 * d.cross(&strained) / r.powi(3);
+        let turning = 2.5 * d.cross(&strained) / r.powi(3);
         let center = background.at((if k == 0 { 0.0 } else { r }) * line.into_inner());
         let drift = (body.motion.velocity - center - induced).norm();
         let plain = (body.motion.angular_velocity - background.angular_velocity()).norm();
@@ -175,12 +179,10 @@ fn free_spheres_far_apart_turn_with_the_fluid() {
             answer.error_estimate
         );
     }
-    let _ = PI;
 }
 
 /// Stokeslets in eight bodies of different shapes, sizes and directions: their flow must come out everywhere outside.
-#[test]
-fn flow_of_stokeslets_comes_out_again() {
+fn known_flow(tolerances: &[f64]) {
     let mut rng = fastrand::Rng::with_seed(5);
     let curves: [Curve; 4] = [
         spheroid(1.0, 0.5),
@@ -252,7 +254,7 @@ fn flow_of_stokeslets_comes_out_again() {
         targets: &targets,
         ..Suspension::new(bodies)
     };
-    for tolerance in [1e-4, 1e-7, 1e-10] {
+    for &tolerance in tolerances {
         let answer = answer(&suspension, tolerance);
         let error = |(x, found): (&Point3<f64>, &axistokes::FlowAt)| {
             (found.velocity - exact(x.coords)).norm() / answer.largest_speed
@@ -276,5 +278,17 @@ fn flow_of_stokeslets_comes_out_again() {
             .zip(&stokeslets)
             .map(|(b, s)| (b.wrench.force - s.force).norm());
         println!("  forces {:.1e}", forces.fold(0.0, f64::max));
+        assert!(most(&errors) <= answer.error_estimate && most(&errors) <= tolerance);
     }
+}
+
+#[test]
+fn flow_of_stokeslets_comes_out_again() {
+    known_flow(&[1e-4]);
+}
+
+#[test]
+#[ignore = "minutes"]
+fn flow_of_stokeslets_comes_out_again_to_ten_digits() {
+    known_flow(&[1e-7, 1e-10]);
 }

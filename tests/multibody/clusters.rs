@@ -2,7 +2,7 @@
 
 use axistokes::multibody::contact::{Placed, gaps};
 use axistokes::{Body, Frame, Silent, Suspension};
-use nalgebra::{DMatrix, Point3, Rotation3, Unit, Vector3};
+use nalgebra::{DMatrix, Point3, Rotation3, Unit};
 
 use super::common::{Curve, apart, asymmetry, direction, random, spheroid};
 
@@ -52,7 +52,7 @@ fn check(seed: u64, tolerance: f64) {
         found.matrix.amax(),
         begin.elapsed().as_secs_f64()
     );
-    assert!(least > 0.0);
+    assert!(found.error_estimate <= tolerance && asymmetry <= 1e-5 && least > 0.0);
 }
 
 #[test]
@@ -69,7 +69,8 @@ fn all_have_symmetric_positive_mobilities() {
 #[test]
 fn look_the_same_from_any_side() {
     let mut rng = fastrand::Rng::with_seed(7);
-    let cluster = cluster(0);
+    let mut cluster = cluster(0);
+    cluster.bodies.truncate(2);
     let rotation = Rotation3::from_axis_angle(&direction(&mut rng), 2.0);
     let shift = 10.0 * random(&mut rng);
     let moved = |place: &dyn Fn(&Frame) -> Frame| {
@@ -97,22 +98,12 @@ fn look_the_same_from_any_side() {
     // Forces per velocity are a length, torques per velocity an area, torques per angular velocity a volume.
     let power = |i: usize, j: usize| 1 + (i / 3 % 2) as i32 + (j / 3 % 2) as i32;
     let lengths = DMatrix::from_fn(count, count, |i, j| 3f64.powi(power(i, j)));
-    let _ = Vector3::<f64>::zeros();
-    let resistance =
-        |s: &Suspension<'_>| s.grand_resistance(1e-4, &Silent).expect("a matrix").matrix;
-    let [own, of_turned, of_enlarged] = [&cluster, &turned, &enlarged].map(resistance);
-    println!(
-        "resistance: turned {:.1e}, enlarged {:.1e}, asymmetry {:.1e}",
-        apart(&of_turned, &(&turn * &own * turn.transpose())),
-        apart(&of_enlarged.component_div(&lengths), &own),
-        asymmetry(&own)
-    );
     let mobility = |s: &Suspension<'_>| s.grand_mobility(1e-4, &Silent).expect("a matrix").matrix;
-    let [own_m, of_turned, of_enlarged] = [&cluster, &turned, &enlarged].map(mobility);
-    println!(
-        "mobility: turned {:.1e}, enlarged {:.1e}, R M - 1 {:.1e}",
-        apart(&of_turned, &(&turn * &own_m * turn.transpose())),
-        apart(&of_enlarged.component_mul(&lengths), &own_m),
-        (own * own_m - DMatrix::identity(count, count)).amax()
-    );
+    let [own, of_turned, of_enlarged] = [&cluster, &turned, &enlarged].map(mobility);
+    let errors = [
+        apart(&of_turned, &(&turn * &own * turn.transpose())),
+        apart(&of_enlarged.component_mul(&lengths), &own),
+    ];
+    println!("turned {:.1e}, enlarged {:.1e}", errors[0], errors[1]);
+    assert!(errors[0] <= 5e-6 && errors[1] <= 6e-8);
 }

@@ -134,7 +134,9 @@ fn forces_that_are_not_finite() {
     ] {
         let mut wrong = pair(3.0);
         wrong.bodies[1].motion = Motion::Free(wrench);
-        let (_error, _) = of(&wrong);
+        let (error, message) = of(&wrong);
+        assert!(matches!(error, SuspensionError::Wrench { body: 1, .. }));
+        assert!(message.starts_with("force and torque on body 1 must be finite, got "));
     }
 }
 
@@ -190,14 +192,7 @@ fn iterations_that_end_too_soon() {
 #[test]
 fn tolerances_out_of_range() {
     for tolerance in [0.0, -1.0, f64::NAN] {
-        let pair = moved();
-        match pair.to_tolerance(tolerance, &Silent) {
-            Ok(answer) => println!(
-                "tolerance {tolerance}: estimate {:.1e}, {} points",
-                answer.error_estimate, answer.points
-            ),
-            Err(error) => println!("tolerance {tolerance}: {error}"),
-        }
+        refused(moved().to_tolerance(tolerance, &Silent));
     }
 }
 
@@ -214,13 +209,9 @@ fn resolutions_that_are_too_few() {
 fn an_interior_formulation() {
     let mut pair = moved();
     pair.formulation = axistokes::Formulation::InteriorDoubleLayer;
-    let answer = pair.to_tolerance(1e-3, &Silent);
-    assert!(
-        answer.is_err_and(|_| true)
-            || pair
-                .to_tolerance(1e-3, &Silent)
-                .is_ok_and(|a| a.error_estimate > 0.1)
-    );
+    if let Ok(answer) = pair.to_tolerance(1e-3, &Silent) {
+        assert!(answer.error_estimate > 0.1);
+    }
 }
 
 /// Has lost interest from a stage on.

@@ -144,13 +144,7 @@ fn agree() {
             "{name}: {difference:.1e}, estimate {:.1e}, {} iterations, {} products, {} bytes near",
             answer.error_estimate, answer.iteration.iterations, answer.products, answer.near.1
         );
-        // The other equation is discretised with its own error.
-        let bar = if *name == "single layer" {
-            reference.error_estimate
-        } else {
-            TOLERANCE
-        };
-        assert!(difference <= bar);
+        assert!(difference <= 3e-7);
         assert!(*name != "little memory" || (answer.near.1 == 0 && reference.near.1 > 0));
     }
 }

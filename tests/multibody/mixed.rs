@@ -73,7 +73,7 @@ fn motions_that_were_found_give_back_the_forces() {
         free.error_estimate,
         held.error_estimate
     );
-    assert!(error <= tolerance);
+    assert!(error <= 1e-5);
 }
 
 /// What the forces and torques of one answer would do at the velocities of the other.
@@ -103,7 +103,7 @@ fn two_mixed_problems_are_reciprocal() {
         answer(&Suspension::new(bodies), 1e-4)
     });
     let ((one, of_one), (other, _)) = (power(&first, &second), power(&second, &first));
-    assert!((one - other).abs() <= 1e-4 * of_one);
+    assert!((one - other).abs() <= 4e-6 * of_one);
     println!("{one} {other}: {:.1e}", (one - other).abs() / of_one);
 }
 
@@ -278,7 +278,7 @@ fn known_flow(tolerances: &[f64]) {
             .zip(&stokeslets)
             .map(|(b, s)| (b.wrench.force - s.force).norm());
         println!("  forces {:.1e}", forces.fold(0.0, f64::max));
-        assert!(most(&errors) <= answer.error_estimate && most(&errors) <= tolerance);
+        assert!(most(&errors) <= answer.error_estimate && most(&errors) <= 0.5 * tolerance);
     }
 }
 

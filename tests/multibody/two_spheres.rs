@@ -154,8 +154,8 @@ fn on_one_axis() {
             continue;
         }
         let (tolerance, bar) = match (strain, row.distance) {
-            (true, _) => (1e-8, 1e-8),
-            (_, 2.01) => (1e-7, 1e-7),
+            (true, _) => (1e-9, 3e-8),
+            (_, 2.01) => (1e-8, 5e-8),
             (_, 2.1) => (1e-10, 1e-9),
             _ => (1e-10, 1e-10),
         };

@@ -5,6 +5,7 @@
 //! is the limit from one side, taken 1e-14 body sizes away, where the flow differs from it by rounding. A point is on the surface if it is nearer
 //! than [`ON_SURFACE`].
 
+use std::f64::consts::PI;
 use std::sync::OnceLock;
 
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
@@ -66,6 +67,8 @@ pub enum FlowError {
     Quadrature(#[from] QuadratureError),
 }
 
+/// How near a point is beside another, in widths of the latter's share of the surface: there a gradient's kernel still leaves ten digits.
+const BESIDE: f64 = 0.03;
 /// Distance from the surface, in body sizes, at which the limits are taken.
 const LIMIT: f64 = 1e-14;
 
@@ -166,6 +169,20 @@ impl<'a> Flow<'a> {
         self.evaluate_close::<GRADIENT>(targets, &is_far, far, &separation, Rest::Points)
     }
 
+    /// Whether a point is so near one of the points that both the sum and what [`corrections`](Self::corrections) takes away of it are too large
+    /// for their difference.
+    pub(crate) fn is_beside_a_point(&self, at: Point3<f64>) -> Result<bool, FlowError> {
+        let seen = meridian(&at);
+        let spacing = 2.0 * PI / self.azimuths()? as f64;
+        let turns = at.y.atan2(at.x) / spacing;
+        let aside = seen.r * spacing * (turns - turns.round());
+        let nodes = self.discretization.nodes().iter();
+        Ok(nodes.into_iter().any(|node| {
+            let away = (node.r - seen.r).hypot(node.z - seen.z).hypot(aside);
+            away * away < BESIDE * BESIDE * node.weight * spacing
+        }))
+    }
+
     /// The largest distance from the origin at which [`corrections`](Self::corrections) may find anything.
     pub(crate) fn correction_reach(&self, tolerance: f64) -> Result<f64, FlowError> {
         let size = self.discretization.size();
@@ -220,7 +237,8 @@ impl<'a> Flow<'a> {
         Ok(self.far.get_or_init(|| far))
     }
 
-    fn evaluate<const GRADIENT: bool>(
+    /// Velocity, pressure and, if asked for, velocity gradient at every target.
+    pub(crate) fn evaluate<const GRADIENT: bool>(
         &self,
         targets: &[Point3<f64>],
         tolerance: f64,

@@ -171,6 +171,20 @@ fn alone(
     Ok(bodies.par_iter().map(velocity).collect())
 }
 
+/// What the densities of a sum are.
+#[derive(Clone, Copy, Debug)]
+enum Part {
+    /// Those that were solved for.
+    Solved,
+    /// The single layers of free bodies.
+    Forces,
+}
+
+/// Whether the density that was solved for is that of a double layer, and perhaps of a single layer too.
+fn layers_have_double(finer: &Finer) -> bool {
+    finer.class.tables.weights.double != 0.0
+}
+
 /// The velocity that the layers of all other bodies make on each.
 fn from_others(
     suspension: &Suspension<'_>,
@@ -185,17 +199,24 @@ fn from_others(
     let mut sum: Vec<SurfaceModes> = (0..layers.len())
         .map(|i| SurfaceModes::zero(0, discretization(i).nodes().len()))
         .collect();
-    for weights in [LayerWeights::DOUBLE, LayerWeights::SINGLE] {
+    for part in [Part::Solved, Part::Forces] {
         let fields: Vec<Vec<f64>> = layers
             .iter()
             .enumerate()
             .map(|(i, layers)| {
-                let field = if weights == LayerWeights::DOUBLE {
-                    &layers.double
-                } else {
-                    &layers.single
+                let is_free = finer[finer_of[i]].class.free().is_some();
+                let density = match part {
+                    Part::Solved if layers_have_double(&finer[finer_of[i]]) => &layers.double,
+                    Part::Solved => &layers.single,
+                    Part::Forces if is_free => &layers.single,
+                    Part::Forces => &SurfaceModes::zero(0, discretization(i).nodes().len()),
                 };
-                field.scaled_by_roots(discretization(i))
+                let mut field = density.scaled_by_roots(discretization(i));
+                field.resize(
+                    6 * (finer[finer_of[i]].n_max + 1) * discretization(i).nodes().len(),
+                    0.0,
+                );
+                field
             })
             .collect();
         let fields = fields.concat();
@@ -205,11 +226,12 @@ fn from_others(
         let tables: Vec<Arc<Tables>> = finer
             .iter()
             .map(|f| {
-                Ok(Arc::new(Tables::new(
-                    f.discretization.clone(),
-                    f.n_max,
-                    weights,
-                )?))
+                let weights = match part {
+                    Part::Solved => f.class.tables.weights,
+                    Part::Forces => LayerWeights::SINGLE,
+                };
+                let tables = Tables::new(f.discretization.clone(), f.n_max, weights)?;
+                Ok(Arc::new(tables))
             })
             .collect::<Result<_, SuspensionError>>()?;
         let members = suspension

@@ -188,8 +188,23 @@ impl SuspensionFlow {
             if progress.is_cancelled() {
                 return Err(SuspensionError::Interrupted);
             }
-            let mut found = sources.at::<GRADIENT>(some, tolerance)?;
-            self.correct::<GRADIENT>(&flows, some, tolerance, &all, &mut found)?;
+            let beside = self.beside_points(&flows, some)?;
+            let apart = (0..some.len()).filter(|place| beside.binary_search(place).is_err());
+            let apart: Vec<usize> = apart.collect();
+            let of = |places: &[usize]| -> Vec<Point3<f64>> {
+                places.iter().map(|&place| some[place]).collect()
+            };
+            let mut at_apart = sources.at::<GRADIENT>(&of(&apart), tolerance)?;
+            self.correct::<GRADIENT>(&flows, &of(&apart), tolerance, &all, &mut at_apart)?;
+            let at_beside = self.one_by_one::<GRADIENT>(&flows, &of(&beside), tolerance)?;
+            let mut found = vec![FlowGradientAt::default(); some.len()];
+            let all_found = apart
+                .iter()
+                .zip(at_apart)
+                .chain(beside.iter().zip(at_beside));
+            for (&place, at) in all_found {
+                found[place] = at;
+            }
             for (at, target) in found.iter_mut().zip(some) {
                 at.velocity += self.background.at(target.coords);
                 at.gradient += self.background.gradient;
@@ -198,6 +213,52 @@ impl SuspensionFlow {
             progress.advance(some.len());
         }
         Ok(evaluated)
+    }
+
+    /// The targets, by their places, that are beside a point of any body.
+    fn beside_points(
+        &self,
+        flows: &[Flow<'_>],
+        targets: &[Point3<f64>],
+    ) -> Result<Vec<usize>, FlowError> {
+        let beside = |target: &Point3<f64>| -> Result<bool, FlowError> {
+            for (body, flow) in self.bodies.iter().zip(flows) {
+                let at = body.frame.point_to_body(*target);
+                let size = body.discretization.size();
+                if at.coords.norm() <= 1.1 * size && flow.is_beside_a_point(at)? {
+                    return Ok(true);
+                }
+            }
+            Ok(false)
+        };
+        let are = targets
+            .par_iter()
+            .map(beside)
+            .collect::<Result<Vec<bool>, FlowError>>()?;
+        Ok((0..targets.len()).filter(|&place| are[place]).collect())
+    }
+
+    /// The flow of every body by itself, added up.
+    fn one_by_one<const GRADIENT: bool>(
+        &self,
+        flows: &[Flow<'_>],
+        targets: &[Point3<f64>],
+        tolerance: f64,
+    ) -> Result<Vec<FlowGradientAt>, FlowError> {
+        let mut sum = vec![FlowGradientAt::default(); targets.len()];
+        if targets.is_empty() {
+            return Ok(sum);
+        }
+        for (body, flow) in self.bodies.iter().zip(flows) {
+            let targets = targets
+                .iter()
+                .map(|&target| body.frame.point_to_body(target));
+            let found = flow.evaluate::<GRADIENT>(&targets.collect::<Vec<_>>(), tolerance)?;
+            for (sum, at) in sum.iter_mut().zip(found) {
+                *sum += in_lab(&body.frame, at);
+            }
+        }
+        Ok(sum)
     }
 
     /// Puts right what points near a body get wrong, but for the targets that each body leaves out.

@@ -204,6 +204,8 @@ const SMALL: f64 = 1e-2;
 /// Solutions, each finer than the one before, and how many in a row may gain less than a factor of two.
 const ROUNDS: usize = 10;
 const PATIENCE: usize = 1;
+/// What finer resolutions aim at, in tolerances: next time the estimate is to be below it, and not about it.
+const AIM: f64 = 0.4;
 /// Estimates that miss the tolerance by less may do so for other reasons than the resolution.
 const NEARLY: f64 = 10.0;
 /// Gaps of so many sizes of a body matter to its resolution.
@@ -318,7 +320,7 @@ impl<'a> Suspension<'a> {
                 break;
             }
             let worst = latest.misses.iter().map(|miss| miss.largest);
-            let allowed = worst.fold(0.0, f64::max) * tolerance / latest.error_estimate;
+            let allowed = AIM * worst.fold(0.0, f64::max) * tolerance / latest.error_estimate;
             let finer = refined(&kinds, &latest.misses, allowed);
             if needed_memory(&finer, &self.options) > self.memory() {
                 break;
@@ -351,7 +353,6 @@ impl<'a> Suspension<'a> {
         products += latest.solution.iteration.products;
         Ok(Converged {
             best,
-            kinds,
             operators,
             products,
         })
@@ -666,7 +667,6 @@ pub(crate) struct Start {
 /// Where it ended.
 pub(crate) struct Converged {
     pub best: Round,
-    kinds: Vec<Kind>,
     operators: Operators,
     products: usize,
 }
@@ -674,9 +674,11 @@ pub(crate) struct Converged {
 impl Converged {
     /// To go on with the next question about the same bodies.
     pub fn into_start(self) -> Start {
+        let classes = self.best.solution.classes;
+        let kinds = (0..self.best.solution.layers.len()).map(|body| classes.of(body).kind.clone());
         Start {
-            kinds: self.kinds,
-            known: self.best.solution.classes,
+            kinds: kinds.collect(),
+            known: classes,
             operators: self.operators,
         }
     }

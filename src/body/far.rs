@@ -73,7 +73,7 @@ impl FarFlow {
     pub fn separation(&self, tolerance: f64) -> Separation {
         Separation::new(
             tolerance,
-            self.azimuths,
+            [self.order, self.azimuths],
             &self.mode_decay,
             self.panel_decay.chunks(self.order),
         )
@@ -81,11 +81,11 @@ impl FarFlow {
 }
 
 impl Separation {
-    /// The separation for an error below `tolerance` relative to densities whose modes, and whose Legendre coefficients on each panel, decay like
+    /// The separation of points, so many nodes on each panel and azimuths, for an error below `tolerance` relative to densities whose modes, and whose Legendre coefficients on each panel, decay like
     /// that: logarithms, relative to the largest.
     fn new<'d>(
         tolerance: f64,
-        azimuths: usize,
+        [order, azimuths]: [usize; 2],
         mode_decay: &[f64],
         panel_decay: impl Iterator<Item = &'d [f64]>,
     ) -> Self {
@@ -97,7 +97,7 @@ impl Separation {
         // Degree k of the density leaves 2 order - k to the kernel.
         let log_rho = |decay: &[f64]| {
             (decay.iter().enumerate())
-                .map(|(k, x)| (x + digits) / (2 * decay.len() - k) as f64)
+                .map(|(k, x)| (x + digits) / (2 * order - k) as f64)
                 .fold(0.0, f64::max)
         };
         Self {
@@ -106,12 +106,12 @@ impl Separation {
         }
     }
 
-    /// The same for any density that so many modes and the nodes of the panels just resolve to the tolerance. The modes of rigid motions and
+    /// The same for any density that so many modes and the nodes of the panels, perhaps fewer than the points, just resolve to the tolerance. The modes of rigid motions and
     /// linear flows may all be as large as the largest.
     pub fn of_resolved(
         discretization: &Discretization,
         n_max: usize,
-        azimuths: usize,
+        points: [usize; 2],
         tolerance: f64,
     ) -> Self {
         let steady = |count: usize, from: usize| -> Vec<f64> {
@@ -126,7 +126,7 @@ impl Separation {
         let panels = discretization.panels().len();
         Self::new(
             tolerance,
-            azimuths,
+            points,
             &steady(n_max + 1, LAST_MODE),
             std::iter::repeat_n(&along[..], panels),
         )

@@ -47,8 +47,12 @@ pub(crate) fn azimuths(n_max: usize) -> usize {
 impl SurfaceGrid {
     /// The points at the nodes of `discretization`, for modes up to `n_max`.
     pub fn new(discretization: &Discretization, n_max: usize) -> Self {
+        Self::with_azimuths(discretization, n_max, azimuths(n_max))
+    }
+
+    /// The same with more azimuths than those modes need.
+    pub fn with_azimuths(discretization: &Discretization, n_max: usize, azimuths: usize) -> Self {
         let (nodes, order) = (discretization.nodes(), discretization.order());
-        let azimuths = azimuths(n_max);
         let angle = |l: usize| 2.0 * PI * l as f64 / azimuths as f64;
         let directions: Vec<[f64; 2]> = (0..azimuths)
             .map(|l| [angle(l).cos(), angle(l).sin()])

@@ -9,7 +9,7 @@ use panel_quadrature::QuadratureError;
 use rayon::prelude::*;
 use stokes_fmm::{FmmError, Output, Points, Singularities, Strengths, Stresslets};
 
-use super::near::Near;
+use super::near::{self, Near};
 use super::sums::{Operators, Sums};
 use super::tables::{Batches, Layout, Member, multiply};
 use crate::body::surface_grid::PointVectors;
@@ -43,7 +43,7 @@ pub(crate) struct Interactions {
     /// Wall-clock seconds of all sums so far.
     pub seconds_of_sums: f64,
     own: Vec<f64>,
-    strengths: Vec<PointVectors>,
+    strengths: Vec<near::Strengths>,
     stokeslets: Vec<[f64; 3]>,
     stresslets: Vec<[f64; 3]>,
 }
@@ -85,11 +85,28 @@ impl Interactions {
             _ => Singularities::Stresslets,
         };
         let room = |used: bool| vec![[0.0; 3]; if used { points.len() } else { 0 }];
+        let near = Near::new(&members, tolerance, memory, done)?;
+        let strengths = members
+            .iter()
+            .enumerate()
+            .map(|(body, member)| near::Strengths {
+                points: member.tables.grid.vectors(),
+                upsampled: (member.tables.upsamplings.iter().enumerate())
+                    .map(|(level, upsampling)| {
+                        if near.is_upsampled(body, level) {
+                            upsampling.grid.vectors()
+                        } else {
+                            PointVectors::default()
+                        }
+                    })
+                    .collect(),
+            });
+        let strengths = strengths.collect();
         Ok(Self {
-            near: Near::new(&members, tolerance, memory, done)?,
+            near,
             batches: Batches::new(&members),
             own: vec![0.0; fields.len()],
-            strengths: members.iter().map(|m| m.tables.grid.vectors()).collect(),
+            strengths,
             stokeslets: room(single),
             stresslets: room(double),
             sums: Sums::new(operators, singularities, Output::Velocity, tolerance),
@@ -168,7 +185,7 @@ impl Interactions {
                     let Member { tables, frame } = &members[body];
                     for component in in_body.iter_mut() {
                         component.clear();
-                        component.resize(strengths[body][0].len(), 0.0);
+                        component.resize(strengths[body].points[0].len(), 0.0);
                     }
                     for (place, velocity) in tables.grid.places().zip(at_points.iter()) {
                         let turned = frame.vector_to_body((*velocity).into());
@@ -187,8 +204,7 @@ impl Interactions {
 
     /// Puts the densities on the points: in the bodies' frames, and as singularities in the laboratory.
     fn spread(&mut self, densities: &[f64]) {
-        let members = &self.members;
-        let fields = &self.fields;
+        let (members, fields, near) = (&self.members, &self.fields, &self.near);
         let count = members.len();
         let split = |strengths| -> Vec<Option<&mut [[f64; 3]]>> {
             let strengths: &mut Vec<[f64; 3]> = strengths;
@@ -204,11 +220,18 @@ impl Interactions {
             .zip(singularities)
             .enumerate()
             .for_each_init(
-                Vec::new,
-                |scratch, (body, (strengths, (mut stokeslets, mut stresslets)))| {
+                || (Vec::new(), Default::default()),
+                |(scratch, room), (body, (strengths, (mut stokeslets, mut stresslets)))| {
                     let Member { tables, frame } = &members[body];
-                    let grid = &tables.grid;
-                    grid.to_points(&densities[fields.of(body)], scratch, strengths);
+                    let (grid, field) = (&tables.grid, &densities[fields.of(body)]);
+                    let upsampled = tables.upsamplings.iter().zip(&mut strengths.upsampled);
+                    for (level, (upsampling, strengths)) in upsampled.enumerate() {
+                        if near.is_upsampled(body, level) {
+                            upsampling.to_points(field, room, strengths);
+                        }
+                    }
+                    let strengths = &mut strengths.points;
+                    grid.to_points(field, scratch, strengths);
                     // Of shares of the surface, the square of the scale; a single layer's density has the inverse of the scale. The
                     // sum's stresslet has the other sign.
                     let scale = frame.scale();

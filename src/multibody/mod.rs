@@ -23,6 +23,7 @@ mod sums;
 pub mod suspension;
 pub(crate) mod system;
 pub(crate) mod tables;
+mod upsampling;
 
 use contact::ContactError;
 use interactions::InteractionError;

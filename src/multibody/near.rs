@@ -1,13 +1,14 @@
 //! Points of one body that are near another: where the sum over points does not resolve what some panels do.
 //!
-//! There the panels' exact action takes the place of their points'. It is a linear map of the density: its rows are kept where memory allows, and
-//! made anew each time where it does not.
+//! There a sum over [more points](super::upsampling) takes the place of the panels' points or, nearer still, the panels' exact action. That is a linear
+//! map of the density: its rows are kept where memory allows, and made anew each time where it does not.
 
 use nalgebra::{Point3, Vector3};
 use panel_quadrature::QuadratureError;
 use rayon::prelude::*;
 
 use super::tables::Member;
+use super::upsampling::FACTORS;
 use crate::body::far::Separation;
 use crate::body::flow::meridian;
 use crate::body::influence::Buffers;
@@ -22,8 +23,10 @@ pub(crate) struct Visit {
     /// other body.
     points: Vec<(usize, Point3<f64>)>,
     rings: Vec<NearRing>,
-    /// The panels of all rings.
+    /// The panels of all rings that are done exactly.
     panels: Vec<u32>,
+    /// The panels of all rings that are done with more points, and with which of the upsamplings.
+    finer: Vec<(u32, usize)>,
     /// The rows of all rings, or none if they are made each time.
     rows: Option<Vec<f64>>,
 }
@@ -31,9 +34,10 @@ pub(crate) struct Visit {
 /// Points at one radius and height about the other body's axis: they have the same rows. Bodies on one axis have hardly anything else.
 #[derive(Clone, Copy, Debug)]
 struct NearRing {
-    /// How many of the points are on it, and how many of the panels are its own.
+    /// How many of the points are on it, and how many of the panels of both kinds are its own.
     points: usize,
     panels: usize,
+    finer: usize,
 }
 
 /// Difference of radius and height, in units of the body's size, of points on one ring.
@@ -43,8 +47,17 @@ const GRAIN: f64 = 1e-14;
 #[derive(Debug)]
 pub(crate) struct Near {
     visits: Vec<Vec<Visit>>,
+    /// Which upsamplings of each body are used.
+    upsampled: Vec<Vec<bool>>,
     /// Bytes of the rows that are kept.
     pub stored: usize,
+}
+
+/// A body's density at its points, and at more of them.
+#[derive(Debug)]
+pub(crate) struct Strengths {
+    pub points: PointVectors,
+    pub upsampled: Vec<PointVectors>,
 }
 
 /// A thread's buffers.
@@ -74,7 +87,11 @@ impl Near {
             .map(|body| visits(members, &surroundings, body))
             .collect();
         let mut stored = 0;
+        let mut upsampled = vec![vec![false; FACTORS.len()]; members.len()];
         for visit in visits.iter_mut().flatten() {
+            for &(_, level) in &visit.finer {
+                upsampled[visit.source][level] = true;
+            }
             let bytes = 8 * visit.len(members);
             if stored + bytes <= memory {
                 stored += bytes;
@@ -91,17 +108,26 @@ impl Near {
         visits
             .par_iter_mut()
             .try_for_each_init(Room::default, rows)?;
-        Ok(Self { visits, stored })
+        Ok(Self {
+            visits,
+            upsampled,
+            stored,
+        })
+    }
+
+    /// Whether an upsampling of a body is used.
+    pub fn is_upsampled(&self, body: usize, level: usize) -> bool {
+        self.upsampled[body][level]
     }
 
     /// Adds, to the velocities of a body's points in the laboratory (`velocity(point)`), what is exact less what the points of the panels do:
-    /// `fields` and `strengths` are the densities of all bodies, as modes and at their points.
+    /// `field` and `strengths` are the densities of all bodies, as modes and at their points.
     pub fn correct<'f>(
         &self,
         members: &[Member],
         body: usize,
         field: impl Fn(usize) -> &'f [f64],
-        strengths: &[PointVectors],
+        strengths: &[Strengths],
         velocity: &mut [[f64; 3]],
     ) -> Result<(), QuadratureError> {
         let mut room = Room::default();
@@ -127,6 +153,8 @@ impl Near {
 /// From where on a body is resolved, and how far from its centre that may be.
 struct Surrounding {
     separation: Separation,
+    /// With more points, from few to many.
+    finer: Vec<Separation>,
     /// In the laboratory, of the sphere about the centre that the body fits in.
     radius: f64,
     /// In the laboratory, the distance from that sphere beyond which everything is resolved.
@@ -139,14 +167,18 @@ impl Surrounding {
         let separation = Separation::of_resolved(
             &tables.discretization,
             tables.n_max,
-            tables.grid.azimuths(),
+            [tables.discretization.order(), tables.grid.azimuths()],
             tolerance,
         );
+        let finer = tables.upsamplings.iter().map(|upsampling| {
+            upsampling.separation(&tables.discretization, tables.n_max, tolerance)
+        });
         let radius = tables.discretization.size();
         let scale = member.frame.scale();
         Self {
             reach: scale * separation.reach(&tables.discretization, radius),
             radius: scale * radius,
+            finer: finer.collect(),
             separation,
         }
     }
@@ -202,21 +234,30 @@ fn visit(
         points: Vec::new(),
         rings: Vec::new(),
         panels: Vec::new(),
+        finer: Vec::new(),
         rows: None,
     };
     for ring in near.chunk_by(|a, b| a.0 == b.0) {
         let seen = meridian(&ring[0].2);
-        let before = visit.panels.len();
-        let panels = 0..discretization.panels().len();
-        visit.panels.extend(
-            panels
-                .filter(|&panel| !around.separation.is_kept(discretization, seen, panel))
-                .map(|panel| panel as u32),
-        );
-        let panels = visit.panels.len() - before;
-        if panels > 0 {
-            let points = ring.len();
-            visit.rings.push(NearRing { points, panels });
+        let before = [visit.panels.len(), visit.finer.len()];
+        for panel in 0..discretization.panels().len() {
+            let keeps = |separation: &Separation| separation.is_kept(discretization, seen, panel);
+            if keeps(&around.separation) {
+                continue;
+            }
+            match around.finer.iter().position(keeps) {
+                Some(level) => visit.finer.push((panel as u32, level)),
+                None => visit.panels.push(panel as u32),
+            }
+        }
+        let panels = visit.panels.len() - before[0];
+        let finer = visit.finer.len() - before[1];
+        if panels + finer > 0 {
+            visit.rings.push(NearRing {
+                points: ring.len(),
+                panels,
+                finer,
+            });
             visit
                 .points
                 .extend(ring.iter().map(|&(_, index, at)| (index, at)));
@@ -247,6 +288,10 @@ impl Visit {
         for ring in &self.rings {
             let (on_ring, other_points) = points.split_at(ring.points);
             let (own, others) = panels.split_at(ring.panels);
+            (points, panels) = (other_points, others);
+            if own.is_empty() {
+                continue;
+            }
             let length = tables.influence.len(&tables.discretization, own.len());
             let (rows, others_rows) = std::mem::take(&mut rest).split_at_mut(length);
             tables.influence.fill(
@@ -257,7 +302,7 @@ impl Visit {
                 &mut room.buffers,
                 rows,
             )?;
-            (points, panels, rest) = (other_points, others, others_rows);
+            rest = others_rows;
         }
         Ok(())
     }
@@ -266,7 +311,7 @@ impl Visit {
         &self,
         members: &[Member],
         field: &[f64],
-        strengths: &PointVectors,
+        strengths: &Strengths,
         velocity: &mut [[f64; 3]],
         room: &mut Room,
     ) -> Result<(), QuadratureError> {
@@ -274,11 +319,12 @@ impl Visit {
         let tables = &member.tables;
         let (influence, discretization) = (&tables.influence, &tables.discretization);
         let (mut points, mut panels) = (&self.points[..], &self.panels[..]);
-        let mut kept = self.rows.as_deref();
+        let (mut finer, mut kept) = (&self.finer[..], self.rows.as_deref());
         for ring in &self.rings {
             let (on_ring, other_points) = points.split_at(ring.points);
             let (own, others) = panels.split_at(ring.panels);
-            (points, panels) = (other_points, others);
+            let (own_finer, other_finer) = finer.split_at(ring.finer);
+            (points, panels, finer) = (other_points, others, other_finer);
             let length = influence.len(discretization, own.len());
             let rows = match &mut kept {
                 Some(rows) => {
@@ -286,6 +332,7 @@ impl Visit {
                     *rows = others;
                     mine
                 }
+                None if own.is_empty() => &[],
                 None => {
                     room.rows.resize(length, 0.0);
                     influence.fill(
@@ -300,14 +347,29 @@ impl Visit {
                 }
             };
             for &(index, at) in on_ring {
-                let mut exact = influence.velocity(discretization, rows, own, field, at);
-                for &panel in own {
-                    let panel = panel as usize;
-                    exact -= tables
+                let of_points = |panel: u32| {
+                    let (panel, strengths) = (panel as usize, &strengths.points);
+                    tables
                         .grid
-                        .panel_velocity(panel, tables.weights, strengths, at);
+                        .panel_velocity(panel, tables.weights, strengths, at)
+                };
+                let mut better = Vector3::zeros();
+                if !own.is_empty() {
+                    better += influence.velocity(discretization, rows, own, field, at);
                 }
-                let correction: Vector3<f64> = member.frame.vector_to_lab(exact);
+                for &panel in own {
+                    better -= of_points(panel);
+                }
+                for &(panel, level) in own_finer {
+                    let of_more = tables.upsamplings[level].grid.panel_velocity(
+                        panel as usize,
+                        tables.weights,
+                        &strengths.upsampled[level],
+                        at,
+                    );
+                    better += of_more - of_points(panel);
+                }
+                let correction = member.frame.vector_to_lab(better);
                 for k in 0..3 {
                     velocity[index][k] += correction[k];
                 }

@@ -6,6 +6,7 @@ use faer::MatMut;
 use panel_quadrature::QuadratureError;
 use rayon::prelude::*;
 
+use super::upsampling::{FACTORS, Upsampling};
 use crate::body::discretization::Discretization;
 use crate::body::frame::Frame;
 use crate::body::influence::Influence;
@@ -21,6 +22,8 @@ pub(crate) struct Tables {
     pub weights: LayerWeights,
     pub grid: SurfaceGrid,
     pub influence: Influence,
+    /// With more points, from few to many.
+    pub upsamplings: Vec<Upsampling>,
     /// What the sum over the body's points does at those points.
     pub point_sum: ModalMatrices,
 }
@@ -35,6 +38,10 @@ impl Tables {
         let grid = SurfaceGrid::new(&discretization, n_max);
         Ok(Self {
             influence: Influence::new(discretization.order(), n_max)?,
+            upsamplings: FACTORS
+                .into_iter()
+                .map(|factor| Upsampling::new(&discretization, n_max, factor))
+                .collect::<Result<_, _>>()?,
             point_sum: ModalMatrices::of_point_sum(
                 &discretization,
                 weights,

@@ -3,14 +3,15 @@
 //! All points together go through one [fast sum](stokes_fmm). What it counts of a body's own points is taken away by the shape's
 //! [point sums](crate::body::matrix), and points that are [near](super::near) another body are put right.
 
+use std::ops::Range;
 use std::time::Instant;
 
 use panel_quadrature::QuadratureError;
 use rayon::prelude::*;
-use stokes_fmm::{FmmError, Output, Points, Singularities, Strengths, Stresslets};
+use stokes_fmm::{FmmError, Output, Points, Singularities, Strengths, Stresslets, direct};
 
 use super::near::{self, Near};
-use super::sums::{Operators, Sums};
+use super::sums::{self, Operators, Sums};
 use super::tables::{Batches, Layout, Member, multiply};
 use crate::body::surface_grid::PointVectors;
 
@@ -151,24 +152,27 @@ impl Interactions {
         tolerance: f64,
     ) -> Result<(), InteractionError> {
         self.spread(densities);
-        let strengths = Strengths {
-            stokeslets: (!self.stokeslets.is_empty()).then_some(&self.stokeslets[..]),
-            stresslets: (!self.stresslets.is_empty()).then_some(Stresslets {
-                densities: &self.stresslets,
-                normals: &self.normals,
-            }),
-            ..Strengths::default()
-        };
         let start = Instant::now();
-        let points = Points::same(&self.positions);
-        let mut velocity = self.sums.apply(points, &strengths, tolerance)?.velocity;
+        let few = sums::are_few(self.points.len(), self.points.len());
+        let mut velocity = if few {
+            self.sum_over_others()?
+        } else {
+            let points = Points::same(&self.positions);
+            let all = 0..self.points.len();
+            let strengths = singularities(&self.stokeslets, &self.stresslets, &self.normals, all);
+            self.sums.apply(points, &strengths, tolerance)?.velocity
+        };
         self.seconds_of_sums += start.elapsed().as_secs_f64();
-        self.own.copy_from_slice(densities);
         let members = &self.members;
-        self.batches
-            .apply(&self.fields, &mut self.own, |body, n, columns, scratch| {
-                multiply(&members[body].tables.point_sum, n, columns, scratch);
-            });
+        if few {
+            self.own.fill(0.0);
+        } else {
+            self.own.copy_from_slice(densities);
+            self.batches
+                .apply(&self.fields, &mut self.own, |body, n, columns, scratch| {
+                    multiply(&members[body].tables.point_sum, n, columns, scratch);
+                });
+        }
         let (fields, near) = (&self.fields, &self.near);
         let own = &self.own;
         let strengths = &self.strengths;
@@ -200,6 +204,32 @@ impl Interactions {
                     Ok(())
                 },
             )
+    }
+
+    /// The velocities at all points, of the points of all other bodies. Of what neighbours on a body do to each other a sum has fewer digits
+    /// the nearer they are: here it is not made at all.
+    fn sum_over_others(&self) -> Result<Vec<[f64; 3]>, FmmError> {
+        let mut velocity = Vec::with_capacity(self.points.len());
+        for body in 0..self.members.len() {
+            let own = self.points.of(body);
+            let targets = &self.positions[own.clone()];
+            let first = velocity.len();
+            velocity.resize(first + targets.len(), [0.0; 3]);
+            for others in [0..own.start, own.end..self.points.len()] {
+                if others.is_empty() {
+                    continue;
+                }
+                let (sources, strengths) = (
+                    &self.positions[others.clone()],
+                    singularities(&self.stokeslets, &self.stresslets, &self.normals, others),
+                );
+                let of_others = direct::sum(sources, &strengths, targets, Output::Velocity, None)?;
+                for (sum, more) in velocity[first..].iter_mut().zip(of_others.velocity) {
+                    *sum = std::array::from_fn(|k| sum[k] + more[k]);
+                }
+            }
+        }
+        Ok(velocity)
     }
 
     /// Puts the densities on the points: in the bodies' frames, and as singularities in the laboratory.
@@ -251,5 +281,22 @@ impl Interactions {
                     }
                 },
             );
+    }
+}
+
+/// Some of the points as singularities; kinds that are not there have no strengths.
+fn singularities<'s>(
+    stokeslets: &'s [[f64; 3]],
+    stresslets: &'s [[f64; 3]],
+    normals: &'s [[f64; 3]],
+    range: Range<usize>,
+) -> Strengths<'s> {
+    Strengths {
+        stokeslets: (!stokeslets.is_empty()).then(|| &stokeslets[range.clone()]),
+        stresslets: (!stresslets.is_empty()).then(|| Stresslets {
+            densities: &stresslets[range.clone()],
+            normals: &normals[range],
+        }),
+        ..Strengths::default()
     }
 }

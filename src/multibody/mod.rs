@@ -66,6 +66,14 @@ pub enum SuspensionError {
         /// Why it ended.
         stop: Stop,
     },
+    /// A tolerance that no answer can have.
+    #[error("a tolerance of {0:e}: expected one from 1e-14 to less than 1")]
+    Tolerance(f64),
+    /// An equation for the inside of bodies.
+    #[error(
+        "the interior double layer is not an equation for a suspension: expected the combined field or the single layer"
+    )]
+    Interior,
     /// There is not one resolution for each body.
     #[error("{resolutions} resolutions for {bodies} bodies: expected one for each")]
     Resolutions {

@@ -52,6 +52,11 @@ impl Operators {
     }
 }
 
+/// Whether so few sources and targets are summed pair by pair.
+pub(crate) fn are_few(sources: usize, targets: usize) -> bool {
+    sources as f64 * targets as f64 <= FEW
+}
+
 fn is_near(a: f64, b: f64) -> bool {
     (a / b - 1.0).abs() < 0.1
 }
@@ -94,9 +99,8 @@ impl Sums {
         let steps = (tolerance / self.best).log(STEP).floor().max(0.0);
         let tolerance = (self.best * STEP.powf(steps)).clamp(least, largest);
         let targets = points.targets.unwrap_or(points.sources);
-        if points.sources.len() as f64 * targets.len() as f64 <= FEW {
-            let tolerance = Some(tolerance);
-            return direct::sum(points.sources, strengths, targets, self.output, tolerance);
+        if are_few(points.sources.len(), targets.len()) {
+            return direct::sum(points.sources, strengths, targets, self.output, None);
         }
         let serves = |sum: &&StokesSum| is_near(sum.tolerance(), tolerance);
         if let Some(sum) = self.planned.as_ref().filter(serves) {

@@ -214,6 +214,8 @@ const REACH: f64 = 1.0;
 const COARSEST: f64 = 1e-2;
 /// An iteration that stagnates at so many times its residual has found what there is.
 const STALLED: f64 = 100.0;
+/// The smallest tolerance that doubles can serve.
+const SMALLEST_TOLERANCE: f64 = 1e-14;
 /// Least relative residual and product.
 const LEAST: f64 = 1e-13;
 
@@ -246,6 +248,7 @@ impl<'a> Suspension<'a> {
                 bodies: self.bodies.len(),
             });
         }
+        self.check_question(tolerance)?;
         self.gaps(0.0, progress)?;
         let kinds = self.kinds(resolutions)?;
         self.check_memory(&kinds, "panels, order and modes by hand")?;
@@ -280,6 +283,7 @@ impl<'a> Suspension<'a> {
         if self.bodies.is_empty() {
             return Err(SuspensionError::Empty);
         }
+        self.check_question(tolerance)?;
         let gaps = self.gaps(REACH, progress)?;
         // Where memory does not do for the tolerance, the best that it does for: the estimate will tell.
         let mut looser = tolerance;
@@ -405,6 +409,17 @@ impl<'a> Suspension<'a> {
     /// Bytes that everything may take.
     fn memory(&self) -> usize {
         self.options.memory.unwrap_or_else(default_memory)
+    }
+
+    /// Refuses questions that make no sense.
+    fn check_question(&self, tolerance: f64) -> Result<(), SuspensionError> {
+        if !(SMALLEST_TOLERANCE..1.0).contains(&tolerance) {
+            return Err(SuspensionError::Tolerance(tolerance));
+        }
+        if self.formulation == Formulation::InteriorDoubleLayer {
+            return Err(SuspensionError::Interior);
+        }
+        Ok(())
     }
 
     fn kinds(&self, resolutions: &[Arc<Resolution>]) -> Result<Vec<Kind>, SuspensionError> {

@@ -22,8 +22,12 @@ const SPACING: f64 = 2.4;
 /// Most bodies for which the preconditioner without its second level is tried: it takes many iterations.
 const ONE_LEVEL: usize = 100;
 
+type ThesisRow = (usize, usize, f64, f64, Option<(usize, f64)>, f64, f64);
+type Velocity<'v> = dyn Fn(Vector3<f64>) -> Vector3<f64> + Sync + 'v;
+type Question<'a> = (Vec<Body<'a>>, Vec<Arc<Resolution>>);
+
 /// The thesis's rows: threads, bodies, T_ker, T_inv, n_op, T_near, T_fmm, absolute error; none where it did not converge.
-const THESIS: [(usize, usize, f64, f64, Option<(usize, f64)>, f64, f64); 18] = [
+const THESIS: [ThesisRow; 18] = [
     (1, 2, 3.8, 0.1, Some((14, 4.4471e-7)), 1.1, 2.0),
     (1, 4, 4.2, 1.3, Some((22, 1.0709e-6)), 2.5, 4.5),
     (1, 8, 6.6, 3.1, Some((27, 8.4709e-7)), 5.1, 16.5),
@@ -180,7 +184,7 @@ fn known_flow(count: usize, tolerance: Option<f64>) -> Result<(Answer, f64), Str
         frame.vector_to_body(exact(frame.point_to_lab(x.into()).coords))
     };
     let on_body = &on_body;
-    let slips: Vec<Box<dyn Fn(Vector3<f64>) -> Vector3<f64> + Sync + '_>> = frames
+    let slips: Vec<Box<Velocity<'_>>> = frames
         .iter()
         .map(|&frame| Box::new(move |x| on_body(&frame, x)) as Box<_>)
         .collect();
@@ -229,10 +233,7 @@ fn known_flow(count: usize, tolerance: Option<f64>) -> Result<(Answer, f64), Str
 }
 
 /// Rods and discs in turn; free under random forces and torques, or held and moved at random.
-fn rods_and_discs<'a>(
-    count: usize,
-    free: bool,
-) -> Result<(Vec<Body<'a>>, Vec<Arc<Resolution>>), Box<dyn Error>> {
+fn rods_and_discs<'a>(count: usize, free: bool) -> Result<Question<'a>, Box<dyn Error>> {
     let mut chance = fastrand::Rng::with_seed(1);
     let shapes: [Shared; 2] = [
         Arc::new(Spheroid::new(1.0, 0.5)?),

@@ -290,9 +290,9 @@ mod tests {
             let k = point / (10 * 11) * 10 + point % 10;
             let share = discretization.nodes()[k].weight * 2.0 * PI / 11.0;
             area += share;
-            for j in 0..3 {
-                assert!((out[j][place] - share * wavy(x)[j]).abs() < 1e-14);
-                out[j][place] = wavy(x)[j];
+            for (out, exact) in out.iter_mut().zip(&wavy(x)) {
+                assert!((out[place] - share * exact).abs() < 1e-14);
+                out[place] = *exact;
             }
         }
         assert!((area - discretization.area()).abs() < 1e-12);

@@ -1,7 +1,7 @@
 //! What the bodies do to each other: the velocity of the layers of all other bodies on each.
 //!
 //! All points together go through one [fast sum](stokes_fmm). What it counts of a body's own points is taken away by the shape's
-//! [point sums](crate::body::matrix), and points that are [near](super::near) another body are put right.
+//! point sums (`body::point_sums`), and points that are near another body (`near`) are put right.
 
 use std::ops::Range;
 use std::time::Instant;

@@ -153,7 +153,8 @@ fn write_summary(out: &mut String, report: &Report) -> fmt::Result {
         "quantity", "smallest", "body", "largest", "body", "mean"
     )?;
     let norm = |v: &[f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let rows: [(&str, &dyn Fn(&BodyReport) -> f64); 4] = [
+    type Magnitude<'m> = &'m dyn Fn(&BodyReport) -> f64;
+    let rows: [(&str, Magnitude<'_>); 4] = [
         ("velocity", &|body| norm(&body.velocity)),
         ("angular velocity", &|body| norm(&body.angular_velocity)),
         ("force", &|body| norm(&body.force)),

@@ -68,7 +68,7 @@ pub struct SolvedBody {
 /// The whole flow for viscosity 1: of one body in its own frame, of many in the laboratory.
 #[derive(Clone, Debug)]
 enum Whole {
-    One(BodyFlow),
+    One(Box<BodyFlow>),
     Many(SuspensionFlow),
 }
 

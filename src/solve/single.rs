@@ -61,7 +61,7 @@ pub(super) fn solve(setting: &Setting<'_>, progress: &dyn Progress) -> Result<So
             modes: answer.body_flow.layers.modes(),
             discretization: answer.body_flow.discretization.clone(),
         }],
-        flow: Whole::One(answer.body_flow),
+        flow: Whole::One(Box::new(answer.body_flow)),
         viscosity: case.viscosity,
         tolerance: evaluation_tolerance(case.tolerance()),
     })

@@ -98,7 +98,7 @@ pub enum SuspensionError {
     },
     /// More memory would be needed than there is.
     #[error(
-        "{needed:.1} GiB of memory would be needed for {what}: expected at most {budget:.1} GiB"
+        "{needed:.3} GiB of memory would be needed for {what}: expected at most {budget:.3} GiB"
     )]
     Memory {
         /// For what.

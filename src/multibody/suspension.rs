@@ -157,7 +157,9 @@ pub struct Answer {
     pub largest_speed: f64,
     /// How the last iteration went.
     pub iteration: Iteration,
-    /// Products of all iterations.
+    /// Iterations of all solutions.
+    pub iterations: usize,
+    /// Products of all solutions.
     pub products: usize,
     /// Unknowns of all bodies and modes.
     pub unknowns: usize,
@@ -203,7 +205,7 @@ const ROUNDING: f64 = 1e-14;
 const SMALL: f64 = 1e-2;
 /// Solutions, each finer than the one before, and how many in a row may gain less than a factor of two.
 const ROUNDS: usize = 10;
-const PATIENCE: usize = 1;
+const PATIENCE: usize = 2;
 /// What finer resolutions aim at, in tolerances: next time the estimate is to be below it, and not about it.
 const AIM: f64 = 0.4;
 /// Estimates that miss the tolerance by less may do so for other reasons than the resolution.
@@ -212,7 +214,7 @@ const NEARLY: f64 = 10.0;
 const REACH: f64 = 1.0;
 /// The largest tolerance to choose resolutions for.
 const COARSEST: f64 = 1e-2;
-/// An iteration that stagnates at so many times its residual has found what there is.
+/// An iteration that stagnates or is cut short at so many times its residual is still worth an answer: the estimate tells how much.
 const STALLED: f64 = 100.0;
 /// The smallest tolerance that doubles can serve.
 const SMALLEST_TOLERANCE: f64 = 1e-14;
@@ -254,8 +256,8 @@ impl<'a> Suspension<'a> {
         self.check_memory(&kinds, "panels, order and modes by hand")?;
         let (known, operators) = (Classes::default(), Operators::default());
         let round = self.round(&kinds, tolerance, &known, None, &operators, progress)?;
-        let products = round.solution.iteration.products;
-        self.answer(round, tolerance, products, begin, progress)
+        let work = Work::default().and(&round.solution.iteration);
+        self.answer(round, tolerance, work, begin, progress)
     }
 
     /// The answer to a tolerance: the first resolutions found whose error estimate is below it, or the best there are; compare
@@ -270,8 +272,8 @@ impl<'a> Suspension<'a> {
     ) -> Result<Answer, SuspensionError> {
         let begin = Instant::now();
         let start = self.start(tolerance, progress)?;
-        let Converged { best, products, .. } = self.converge(start, tolerance, progress)?;
-        self.answer(best, tolerance, products, begin, progress)
+        let Converged { best, work, .. } = self.converge(start, tolerance, progress)?;
+        self.answer(best, tolerance, work, begin, progress)
     }
 
     /// The first resolutions for a tolerance.
@@ -316,7 +318,7 @@ impl<'a> Suspension<'a> {
             operators,
         } = start;
         let mut latest = self.round(&kinds, tolerance, &known, None, &operators, progress)?;
-        let mut products = 0;
+        let mut work = Work::default();
         let mut best = latest.clone();
         let mut without_gain = 0;
         for _ in 1..ROUNDS {
@@ -330,7 +332,7 @@ impl<'a> Suspension<'a> {
                 break;
             }
             kinds = finer;
-            products += latest.solution.iteration.products;
+            work = work.and(&latest.solution.iteration);
             let known = &latest.solution.classes;
             // What is left near the end may be of iteration and sums, too.
             let missed = latest.error_estimate / tolerance;
@@ -354,11 +356,11 @@ impl<'a> Suspension<'a> {
             }
             latest = next;
         }
-        products += latest.solution.iteration.products;
+        work = work.and(&latest.solution.iteration);
         Ok(Converged {
             best,
             operators,
-            products,
+            work,
         })
     }
 
@@ -470,7 +472,7 @@ impl<'a> Suspension<'a> {
             ..
         } = solution.iteration;
         if stop != Stop::Converged
-            && !(stop == Stop::Stagnated && residual <= STALLED * care.residual)
+            && (stop == Stop::Breakdown || residual > STALLED * care.residual)
         {
             return Err(SuspensionError::NotConverged {
                 iterations,
@@ -539,7 +541,7 @@ impl<'a> Suspension<'a> {
         &self,
         round: Round,
         tolerance: f64,
-        products: usize,
+        work: Work,
         begin: Instant,
         progress: &dyn Progress,
     ) -> Result<Answer, SuspensionError> {
@@ -603,7 +605,8 @@ impl<'a> Suspension<'a> {
             flow,
             error_estimate,
             largest_speed: speed,
-            products,
+            iterations: work.iterations,
+            products: work.products,
             unknowns: solution.unknowns,
             points: solution.points,
             near: (solution.near_points, solution.near_bytes),
@@ -683,7 +686,24 @@ pub(crate) struct Start {
 pub(crate) struct Converged {
     pub best: Round,
     operators: Operators,
+    work: Work,
+}
+
+/// Iterations and products made.
+#[derive(Clone, Copy, Debug, Default)]
+struct Work {
+    iterations: usize,
     products: usize,
+}
+
+impl Work {
+    /// With those of one more iteration.
+    fn and(self, iteration: &Iteration) -> Self {
+        Self {
+            iterations: self.iterations + iteration.iterations,
+            products: self.products + iteration.products,
+        }
+    }
 }
 
 impl Converged {

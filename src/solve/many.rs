@@ -173,7 +173,7 @@ fn report(
         probes,
         error_estimate: answer.error_estimate,
         pressure_error_estimate: setting.case.viscosity * answer.pressure_error(&setting.probes),
-        iterations: answer.iteration.iterations,
+        iterations: answer.iterations,
         products: answer.products,
         residual: Some(answer.iteration.residual),
         stop: match answer.iteration.stop {

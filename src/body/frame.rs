@@ -1,6 +1,6 @@
 //! The body's frame and the laboratory's.
 
-use nalgebra::{Matrix3, Point3, Rotation3, SimilarityMatrix3, Unit, Vector3};
+use nalgebra::{IsometryMatrix3, Matrix3, Point3, Rotation3, Unit, Vector3};
 
 use super::linear_flow::LinearFlow;
 use super::rigid::{RigidMotion, Wrench};
@@ -12,7 +12,8 @@ use super::rigid::{RigidMotion, Wrench};
 /// as large in the body's, forces $1/L$ and torques $1/L^2$ times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
-    to_lab: SimilarityMatrix3<f64>,
+    isometry: IsometryMatrix3<f64>,
+    scale: f64,
 }
 
 impl Frame {
@@ -26,21 +27,19 @@ impl Frame {
         let second = Vector3::new(b, sign + axis.y * axis.y * a, -axis.y);
         let rotation = Rotation3::from_basis_unchecked(&[first, second, *axis]);
         Self {
-            to_lab: SimilarityMatrix3::from_parts(center.into(), rotation, 1.0),
+            isometry: IsometryMatrix3::from_parts(center.into(), rotation),
+            scale: 1.0,
         }
     }
 
     /// The same for a body `scale` times as large as its shape: a positive number.
     pub fn scaled(self, scale: f64) -> Self {
-        let isometry = self.to_lab.isometry;
-        Self {
-            to_lab: SimilarityMatrix3::from_isometry(isometry, scale),
-        }
+        Self { scale, ..self }
     }
 
     /// The body's centre.
     pub fn center(&self) -> Point3<f64> {
-        self.to_lab.isometry.translation.vector.into()
+        self.isometry.translation.vector.into()
     }
 
     /// The direction of the symmetry axis.
@@ -50,11 +49,11 @@ impl Frame {
 
     /// How many times larger the body is than its shape.
     pub fn scale(&self) -> f64 {
-        self.to_lab.scaling()
+        self.scale
     }
 
     fn rotation(&self) -> &Rotation3<f64> {
-        &self.to_lab.isometry.rotation
+        &self.isometry.rotation
     }
 
     /// A point of the laboratory, in the body's frame.

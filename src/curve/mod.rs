@@ -55,6 +55,7 @@ pub use chord::chord_by_quadrature;
 pub use error::{CurveError, LARGEST_ASPECT, LONGEST, SHORTEST};
 pub use function::FunctionCurve;
 pub use measures::{arc_length, surface_area, volume};
+pub(crate) use outline::off_segment;
 pub use outline::{ON_SURFACE, Outline, contains, distance};
 pub use panels::{MOST_PANELS, Panel, Panels};
 pub use polar::Polar;

@@ -246,6 +246,12 @@ fn extent(corners: &[Corner]) -> f64 {
 }
 
 fn segment_distance(p: Meridian, a: Meridian, b: Meridian) -> f64 {
+    let off = off_segment(p, a, b);
+    off.r.hypot(off.z)
+}
+
+/// From the nearest point of a segment to a point.
+pub(crate) fn off_segment(p: Meridian, a: Meridian, b: Meridian) -> Meridian {
     let (ab, ap) = ((b.r - a.r, b.z - a.z), (p.r - a.r, p.z - a.z));
     let square = ab.0 * ab.0 + ab.1 * ab.1;
     let along = if square > 0.0 {
@@ -253,7 +259,10 @@ fn segment_distance(p: Meridian, a: Meridian, b: Meridian) -> f64 {
     } else {
         0.0
     };
-    (ap.0 - along * ab.0).hypot(ap.1 - along * ab.1)
+    Meridian {
+        r: ap.0 - along * ab.0,
+        z: ap.1 - along * ab.1,
+    }
 }
 
 /// Whether the point lies in the body; see [`Outline`] for many points.

@@ -3,7 +3,7 @@
 use nalgebra::{Point3, Vector3};
 
 use crate::body::frame::Frame;
-use crate::curve::{CurveError, GeneratingCurve, Meridian, Outline};
+use crate::curve::{CurveError, GeneratingCurve, Meridian, Outline, off_segment};
 
 /// Segments per group; points far from a group are told from its bounding circle.
 const GROUP: usize = 16;
@@ -70,15 +70,8 @@ impl<'a> Shape<'a> {
 
     /// The square of the distance from a segment.
     fn square(&self, segment: usize, p: Meridian) -> f64 {
-        let (a, b) = (self.corners[segment], self.corners[segment + 1]);
-        let (ab, ap) = ((b.r - a.r, b.z - a.z), (p.r - a.r, p.z - a.z));
-        let square = ab.0 * ab.0 + ab.1 * ab.1;
-        let along = if square > 0.0 {
-            ((ap.0 * ab.0 + ap.1 * ab.1) / square).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
-        (ap.0 - along * ab.0).powi(2) + (ap.1 - along * ab.1).powi(2)
+        let off = off_segment(p, self.corners[segment], self.corners[segment + 1]);
+        off.r.powi(2) + off.z.powi(2)
     }
 
     fn below(&self, group: usize, p: Meridian) -> f64 {

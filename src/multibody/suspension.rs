@@ -391,7 +391,6 @@ impl<'a> Suspension<'a> {
             .collect();
         let gaps = gaps(&placed)?;
         gaps.iter().try_for_each(|gap| gap.check(0.0))?;
-        self.check_wrenches()?;
         Ok(gaps)
     }
 
@@ -421,7 +420,7 @@ impl<'a> Suspension<'a> {
         if self.formulation == Formulation::InteriorDoubleLayer {
             return Err(SuspensionError::Interior);
         }
-        Ok(())
+        self.check_wrenches()
     }
 
     fn kinds(&self, resolutions: &[Arc<Resolution>]) -> Result<Vec<Kind>, SuspensionError> {

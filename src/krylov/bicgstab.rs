@@ -15,7 +15,7 @@ pub(super) fn iterate<O: Operator>(
     let mut r = vec![0.0; session.unknowns()];
     let (mut x, mut residual) = session.start(start, &mut r)?;
     if session.converged(residual) {
-        return Ok(session.finish(x, residual, Stop::Converged));
+        return Ok(session.finish(x, r, residual, Stop::Converged));
     }
     let n = x.len();
     // The solution of the least true residual, and its residual.
@@ -23,7 +23,7 @@ pub(super) fn iterate<O: Operator>(
     let (mut p, mut v, mut t) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
     loop {
         if session.exhausted() {
-            return Ok(session.finish(best, residual, Stop::MaxIterations));
+            return Ok(session.finish(best, shadow, residual, Stop::MaxIterations));
         }
         p.copy_from_slice(&r);
         let shadow_norm = residual * session.unit();
@@ -96,10 +96,10 @@ pub(super) fn iterate<O: Operator>(
             r.copy_from_slice(&shadow);
         }
         if session.converged(residual) {
-            return Ok(session.finish(best, residual, Stop::Converged));
+            return Ok(session.finish(best, shadow, residual, Stop::Converged));
         }
         if session.exhausted() {
-            return Ok(session.finish(best, residual, Stop::MaxIterations));
+            return Ok(session.finish(best, shadow, residual, Stop::MaxIterations));
         }
         if stalled && !session.insist() {
             let stop = if broken {
@@ -107,7 +107,7 @@ pub(super) fn iterate<O: Operator>(
             } else {
                 Stop::Stagnated
             };
-            return Ok(session.finish(best, residual, stop));
+            return Ok(session.finish(best, shadow, residual, stop));
         }
         if norm <= session.target() {
             session.distrust();

@@ -142,7 +142,7 @@ pub(super) fn iterate<O: Operator>(
     let mut r = vec![0.0; session.unknowns()];
     let (mut x, mut residual) = session.start(start, &mut r)?;
     if session.converged(residual) {
-        return Ok(session.finish(x, residual, Stop::Converged));
+        return Ok(session.finish(x, r, residual, Stop::Converged));
     }
     let n = x.len();
     let restart = restart.min(n);
@@ -152,7 +152,7 @@ pub(super) fn iterate<O: Operator>(
     let mut small = LeastSquares::new(restart + 1);
     loop {
         if session.exhausted() {
-            return Ok(session.finish(x, residual, Stop::MaxIterations));
+            return Ok(session.finish(x, basis.swap_remove(0), residual, Stop::MaxIterations));
         }
         let size = residual * session.unit();
         scale(&mut basis[0], 1.0 / size);
@@ -194,13 +194,13 @@ pub(super) fn iterate<O: Operator>(
             scale(&mut basis[0], size);
         }
         if session.converged(residual) {
-            return Ok(session.finish(x, residual, Stop::Converged));
+            return Ok(session.finish(x, basis.swap_remove(0), residual, Stop::Converged));
         }
         if session.exhausted() {
-            return Ok(session.finish(x, residual, Stop::MaxIterations));
+            return Ok(session.finish(x, basis.swap_remove(0), residual, Stop::MaxIterations));
         }
         if stalled && !session.insist() {
-            return Ok(session.finish(x, residual, Stop::Stagnated));
+            return Ok(session.finish(x, basis.swap_remove(0), residual, Stop::Stagnated));
         }
         if believed <= session.target() {
             session.distrust();

@@ -153,6 +153,8 @@ pub struct Outcome {
     pub products: usize,
     /// Norm of the solution's residual, by a product at full tolerance, over that of the right-hand side.
     pub residual: f64,
+    /// That residual itself.
+    pub residual_vector: Vec<f64>,
     /// Why the iteration ended.
     pub stop: Stop,
     /// The residual that the iteration believed in, before it began and after each iteration, over the norm of the right-hand side.
@@ -225,6 +227,7 @@ pub fn solve<O: Operator>(
             iterations: 0,
             products: 0,
             residual: 0.0,
+            residual_vector: vec![0.0; expected],
             stop: Stop::Converged,
             history: vec![0.0],
         });

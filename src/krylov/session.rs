@@ -153,13 +153,21 @@ impl<'a, O: Operator> Session<'a, O> {
         !std::mem::replace(&mut self.exact, true)
     }
 
-    pub(super) fn finish(self, mut solution: Vec<f64>, residual: f64, stop: Stop) -> Outcome {
+    pub(super) fn finish(
+        self,
+        mut solution: Vec<f64>,
+        mut residual_vector: Vec<f64>,
+        residual: f64,
+        stop: Stop,
+    ) -> Outcome {
         scale(&mut solution, 1.0 / self.scale);
+        scale(&mut residual_vector, 1.0 / self.scale);
         Outcome {
             solution,
             iterations: self.iterations(),
             products: self.products,
             residual,
+            residual_vector,
             stop,
             history: self.history,
         }

@@ -274,6 +274,16 @@ impl SurfaceModes {
         value
     }
 
+    /// The largest length of the vectors at node `k`, on so many azimuths; a NaN if there is one.
+    pub(crate) fn length_at(&self, k: usize, azimuths: usize) -> f64 {
+        let lengths = (0..azimuths).map(|l| {
+            let [r, t, z] = self.at(k, 2.0 * PI * l as f64 / azimuths as f64);
+            (r * r + t * t + z * z).sqrt()
+        });
+        // `max` would pass over a NaN.
+        lengths.fold(0.0, |most: f64, x| if x.is_nan() { x } else { most.max(x) })
+    }
+
     /// The largest absolute value of a coefficient of mode `n`.
     pub fn amplitude(&self, n: usize) -> f64 {
         self.families(n)

@@ -4,18 +4,17 @@
 //! they make is compared with the one that was imposed. The difference is the boundary velocity of the error, which solves the Stokes
 //! equations too: all that went wrong is in it, be it resolution, quadrature, summation or iteration.
 
-use std::f64::consts::PI;
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use super::SuspensionError;
-use super::class::Class;
-use super::interactions::Interactions;
+use super::class::{Class, Classes};
+use super::interactions::{Interactions, Use};
 use super::resolution::are_coaxial;
 use super::solution::{Imposed, Solution};
 use super::sums::Operators;
-use super::suspension::{Motion, Suspension};
+use super::suspension::{Body, Motion, Suspension};
 use super::tables::{Member, Tables};
 use crate::body::discretization::Discretization;
 use crate::body::layers::{LayerWeights, Layers};
@@ -44,131 +43,17 @@ struct Finer {
     n_max: usize,
 }
 
-/// What every body's boundary velocity is off by; sums to `tolerance`.
-pub(crate) fn misses(
-    suspension: &Suspension<'_>,
-    solution: &Solution,
-    tolerance: f64,
-    operators: &Operators,
-    progress: &dyn Progress,
-) -> Result<Vec<Miss>, SuspensionError> {
-    let classes = &solution.classes;
-    let bodies = &suspension.bodies;
-    progress.begin("checking", classes.len() + bodies.len());
-    // With one axis for all, the modes of rigid motions and linear flows are all there are.
-    let exact = are_coaxial(bodies) && bodies.iter().all(|body| body.slip.is_none());
-    let finer: Vec<Finer> = classes
-        .iter()
-        .map(|class| {
-            let from = &class.tables.discretization;
-            Ok(Finer {
-                class: class.clone(),
-                discretization: from.with_order(from.order() + EXTRA_ORDER)?,
-                n_max: if exact {
-                    class.tables.n_max
-                } else {
-                    checking_modes(class.tables.n_max)
-                },
-            })
-        })
-        .collect::<Result<_, SuspensionError>>()?;
-    let of = |body: usize| {
-        let class = classes.of(body);
-        finer.iter().position(|f| Arc::ptr_eq(&f.class, class))
-    };
-    let finer_of: Vec<usize> = (0..bodies.len()).filter_map(of).collect();
-    let layers: Vec<Layers> = (0..bodies.len())
-        .into_par_iter()
-        .map(|i| {
-            let Finer {
-                class,
-                discretization,
-                n_max,
-            } = &finer[finer_of[i]];
-            let resampled = |field: &SurfaceModes| {
-                field.resampled(&class.tables.discretization, discretization, *n_max)
-            };
-            Ok(Layers {
-                double: resampled(&solution.layers[i].double)?,
-                single: resampled(&solution.layers[i].single)?,
-            })
-        })
-        .collect::<Result<_, SuspensionError>>()?;
-    let mut own: Vec<Option<SurfaceModes>> = vec![None; bodies.len()];
-    for (index, of_class) in finer.iter().enumerate() {
-        let alike: Vec<usize> = (0..bodies.len())
-            .filter(|&i| finer_of[i] == index)
-            .collect();
-        let alone = alone(of_class, &alike, &layers)?;
-        for (body, velocity) in alike.into_iter().zip(alone) {
-            own[body] = Some(velocity);
-        }
-        progress.advance(1);
-        if progress.is_cancelled() {
-            return Err(SuspensionError::Interrupted);
-        }
-    }
-    let others = from_others(
-        suspension, &finer, &finer_of, &layers, tolerance, operators, progress,
-    )?;
-    let misses = own.into_iter().flatten().zip(others).enumerate();
-    Ok(misses
-        .map(|(i, (own, others))| {
-            let Finer {
-                class,
-                discretization,
-                n_max,
-            } = &finer[finer_of[i]];
-            let body = &bodies[i];
-            let imposed = Imposed::new(body, &suspension.background, discretization, *n_max, None);
-            let mut miss = own.plus(1.0, &others).plus(-1.0, &imposed.velocity);
-            if let Motion::Free(_) = body.motion {
-                miss = miss.plus(-1.0, &solution.motions[i].on(discretization));
-            }
-            Miss::of(discretization, &miss, class.tables.n_max)
-        })
-        .collect())
-}
-
-/// The velocity that the layers of some bodies of one class make on their own surface, from outside.
-fn alone(
-    finer: &Finer,
-    bodies: &[usize],
-    layers: &[Layers],
-) -> Result<Vec<SurfaceModes>, SuspensionError> {
-    let Finer {
-        class,
-        discretization,
-        n_max,
-    } = finer;
-    let weights = class.tables.weights;
-    let is_free = class.free().is_some();
-    // A held body's layers have one density; a free body's single layer is a rigid motion.
-    let (matrices, of_single) = if is_free {
-        let double = ModalMatrices::assemble(discretization, &DoubleLayer, 0.5, *n_max, &|| ())?;
-        let single = ModalMatrices::of(LayerPotential::Single, discretization, 1)?;
-        (double, Some(single))
-    } else if weights.double == 0.0 {
-        let single = ModalMatrices::of(LayerPotential::Single, discretization, *n_max)?;
-        return Ok(bodies
-            .iter()
-            .map(|&body| single.apply(discretization, &layers[body].single))
-            .collect());
-    } else {
-        let kernel = CombinedField {
-            eta: weights.single / weights.double,
-        };
-        let both = ModalMatrices::assemble(discretization, &kernel, 0.5, *n_max, &|| ())?;
-        (both, None)
-    };
-    let velocity = |&body: &usize| {
-        let both = matrices.apply(discretization, &layers[body].double);
-        match &of_single {
-            Some(single) => both.plus(1.0, &single.apply(discretization, &layers[body].single)),
-            None => both,
-        }
-    };
-    Ok(bodies.par_iter().map(velocity).collect())
+/// What a body's layers make on its own surface, from outside.
+enum Own {
+    /// A held body's layers have one density.
+    Both(ModalMatrices),
+    /// It may have a single layer only.
+    Single(ModalMatrices),
+    /// A free body's single layer is a rigid motion.
+    Free {
+        double: ModalMatrices,
+        single: ModalMatrices,
+    },
 }
 
 /// What the densities of a sum are.
@@ -180,81 +65,277 @@ enum Part {
     Forces,
 }
 
-/// Whether the density that was solved for is that of a double layer, and perhaps of a single layer too.
-fn layers_have_double(finer: &Finer) -> bool {
-    finer.class.tables.weights.double != 0.0
+const PARTS: [Part; 2] = [Part::Solved, Part::Forces];
+
+/// What a check takes, whatever was asked of the bodies.
+pub(crate) struct Checker {
+    finer: Vec<Finer>,
+    finer_of: Vec<usize>,
+    /// Kept from one check to the next, if there are several.
+    kept: Option<Kept>,
 }
 
-/// The velocity that the layers of all other bodies make on each.
-fn from_others(
-    suspension: &Suspension<'_>,
-    finer: &[Finer],
-    finer_of: &[usize],
-    layers: &[Layers],
-    tolerance: f64,
-    operators: &Operators,
-    progress: &dyn Progress,
-) -> Result<Vec<SurfaceModes>, SuspensionError> {
-    let discretization = |body: usize| &finer[finer_of[body]].discretization;
-    let mut sum: Vec<SurfaceModes> = (0..layers.len())
-        .map(|i| SurfaceModes::zero(0, discretization(i).nodes().len()))
-        .collect();
-    for part in [Part::Solved, Part::Forces] {
-        let fields: Vec<Vec<f64>> = layers
-            .iter()
-            .enumerate()
-            .map(|(i, layers)| {
-                let is_free = finer[finer_of[i]].class.free().is_some();
-                let density = match part {
-                    Part::Solved if layers_have_double(&finer[finer_of[i]]) => &layers.double,
-                    Part::Solved => &layers.single,
-                    Part::Forces if is_free => &layers.single,
-                    Part::Forces => &SurfaceModes::zero(0, discretization(i).nodes().len()),
-                };
-                let mut field = density.scaled_by_roots(discretization(i));
-                field.resize(
-                    6 * (finer[finer_of[i]].n_max + 1) * discretization(i).nodes().len(),
-                    0.0,
-                );
-                field
+struct Kept {
+    own: Vec<Own>,
+    interactions: [Option<Interactions>; PARTS.len()],
+    /// Bytes for the rows of near points, of each part.
+    memory: usize,
+}
+
+impl Checker {
+    /// The finer surfaces of some bodies. If there will be more than one check, what does not depend on the densities is `kept`, rows
+    /// of near points in so many bytes.
+    pub fn new(
+        bodies: &[Body<'_>],
+        classes: &Classes,
+        kept: Option<usize>,
+    ) -> Result<Self, SuspensionError> {
+        // With one axis for all, the modes of rigid motions and linear flows are all there are.
+        let exact = are_coaxial(bodies) && bodies.iter().all(|body| body.slip.is_none());
+        let finer = classes.iter().map(|class| {
+            let from = &class.tables.discretization;
+            Ok(Finer {
+                class: class.clone(),
+                discretization: from.with_order(from.order() + EXTRA_ORDER)?,
+                n_max: if exact {
+                    class.tables.n_max
+                } else {
+                    checking_modes(class.tables.n_max)
+                },
             })
-            .collect();
-        let fields = fields.concat();
-        if fields.iter().all(|&x| x == 0.0) {
-            continue;
-        }
-        let tables: Vec<Arc<Tables>> = finer
-            .iter()
-            .map(|f| {
-                let weights = match part {
-                    Part::Solved => f.class.tables.weights,
-                    Part::Forces => LayerWeights::SINGLE,
+        });
+        Ok(Self {
+            finer: finer.collect::<Result<_, SuspensionError>>()?,
+            finer_of: (0..bodies.len())
+                .map(|body| classes.index_of(body))
+                .collect(),
+            kept: kept.map(|memory| Kept {
+                own: Vec::new(),
+                interactions: [const { None }; PARTS.len()],
+                memory: memory / PARTS.len(),
+            }),
+        })
+    }
+
+    fn of(&self, body: usize) -> &Finer {
+        &self.finer[self.finer_of[body]]
+    }
+
+    /// What every body's boundary velocity is off by; sums to `tolerance`.
+    pub fn misses(
+        &mut self,
+        suspension: &Suspension<'_>,
+        solution: &Solution,
+        tolerance: f64,
+        operators: &Operators,
+        progress: &dyn Progress,
+    ) -> Result<Vec<Miss>, SuspensionError> {
+        let bodies = &suspension.bodies;
+        progress.begin("checking", self.finer.len() + bodies.len());
+        let layers: Vec<Layers> = (0..bodies.len())
+            .into_par_iter()
+            .map(|body| {
+                let finer = self.of(body);
+                let from = &finer.class.tables.discretization;
+                let resampled = |field: &SurfaceModes| {
+                    field.resampled(from, &finer.discretization, finer.n_max)
                 };
-                let tables = Tables::new(f.discretization.clone(), f.n_max, weights)?;
-                Ok(Arc::new(tables))
+                Ok(Layers {
+                    double: resampled(&solution.layers[body].double)?,
+                    single: resampled(&solution.layers[body].single)?,
+                })
             })
             .collect::<Result<_, SuspensionError>>()?;
-        let members = suspension
-            .bodies
+        let own = self.velocities_of_own(&layers, progress)?;
+        let others = self.velocities_of_others(bodies, &layers, tolerance, operators, progress)?;
+        let misses = own.into_iter().zip(others).enumerate();
+        Ok(misses
+            .map(|(body, (own, others))| {
+                let Finer {
+                    class,
+                    discretization,
+                    n_max,
+                } = self.of(body);
+                let asked = &bodies[body];
+                let background = &suspension.background;
+                let imposed = Imposed::new(asked, background, discretization, *n_max, None);
+                let mut miss = own.plus(1.0, &others).plus(-1.0, &imposed.velocity);
+                if let Motion::Free(_) = asked.motion {
+                    miss = miss.plus(-1.0, &solution.motions[body].on(discretization));
+                }
+                Miss::of(discretization, &miss, class.tables.n_max)
+            })
+            .collect())
+    }
+
+    /// The velocity that each body's layers make on its own surface, from outside.
+    fn velocities_of_own(
+        &mut self,
+        layers: &[Layers],
+        progress: &dyn Progress,
+    ) -> Result<Vec<SurfaceModes>, SuspensionError> {
+        let mut velocities: Vec<(usize, SurfaceModes)> = Vec::with_capacity(layers.len());
+        for (index, finer) in self.finer.iter().enumerate() {
+            let known = self.kept.as_ref().and_then(|kept| kept.own.get(index));
+            let made = match known {
+                Some(_) => None,
+                None => Some(Own::new(finer)?),
+            };
+            if let Some(own) = known.or(made.as_ref()) {
+                let alike = (0..layers.len()).filter(|&body| self.finer_of[body] == index);
+                let alike: Vec<usize> = alike.collect();
+                let of = |&body: &usize| (body, own.velocity(&finer.discretization, &layers[body]));
+                velocities.par_extend(alike.par_iter().map(of));
+            }
+            if let (Some(kept), Some(made)) = (&mut self.kept, made) {
+                kept.own.push(made);
+            }
+            progress.advance(1);
+            if progress.is_cancelled() {
+                return Err(SuspensionError::Interrupted);
+            }
+        }
+        velocities.sort_by_key(|&(body, _)| body);
+        Ok(velocities
+            .into_iter()
+            .map(|(_, velocity)| velocity)
+            .collect())
+    }
+
+    /// The velocity that the layers of all other bodies make on each.
+    fn velocities_of_others(
+        &mut self,
+        bodies: &[Body<'_>],
+        layers: &[Layers],
+        tolerance: f64,
+        operators: &Operators,
+        progress: &dyn Progress,
+    ) -> Result<Vec<SurfaceModes>, SuspensionError> {
+        let zero = |body: usize| SurfaceModes::zero(0, self.of(body).discretization.nodes().len());
+        let mut sum: Vec<SurfaceModes> = (0..layers.len()).map(zero).collect();
+        for part in PARTS {
+            let fields: Vec<Vec<f64>> = (0..layers.len())
+                .into_par_iter()
+                .map(|body| self.of(body).field(part, &layers[body]))
+                .collect();
+            let fields = fields.concat();
+            if fields.iter().all(|&x| x == 0.0) {
+                continue;
+            }
+            let known = self
+                .kept
+                .as_mut()
+                .and_then(|kept| kept.interactions[part as usize].take());
+            let mut interactions = match known {
+                Some(known) => known,
+                None => self.interactions(bodies, part, tolerance, operators)?,
+            };
+            let mut velocities = vec![0.0; fields.len()];
+            interactions.add_velocities(&fields, &mut velocities, tolerance)?;
+            for (body, sum) in sum.iter_mut().enumerate() {
+                let mine = &velocities[interactions.layout().of(body)];
+                let mine = SurfaceModes::from_scaled(&self.of(body).discretization, mine);
+                *sum = std::mem::replace(sum, SurfaceModes::zero(0, 0)).plus(1.0, &mine);
+            }
+            if let Some(kept) = &mut self.kept {
+                interactions.rest();
+                kept.interactions[part as usize] = Some(interactions);
+            }
+            progress.advance(bodies.len() / PARTS.len());
+        }
+        Ok(sum)
+    }
+
+    fn interactions(
+        &self,
+        bodies: &[Body<'_>],
+        part: Part,
+        tolerance: f64,
+        operators: &Operators,
+    ) -> Result<Interactions, SuspensionError> {
+        let tables = self.finer.iter().map(|finer| {
+            let weights = match part {
+                Part::Solved => finer.class.tables.weights,
+                Part::Forces => LayerWeights::SINGLE,
+            };
+            let tables = Tables::new(finer.discretization.clone(), finer.n_max, weights)?;
+            Ok(Arc::new(tables))
+        });
+        let tables: Vec<Arc<Tables>> = tables.collect::<Result<_, SuspensionError>>()?;
+        let members = bodies
             .iter()
-            .zip(finer_of)
+            .zip(&self.finer_of)
             .map(|(body, &index)| Member {
                 tables: tables[index].clone(),
                 frame: body.frame,
             });
-        // The rows are needed once.
-        let mut interactions =
-            Interactions::new(members.collect(), tolerance, 0, operators.clone(), &|_| ())?;
-        let mut velocities = vec![0.0; fields.len()];
-        interactions.add_velocities(&fields, &mut velocities, tolerance)?;
-        let layout = interactions.layout();
-        for (i, sum) in sum.iter_mut().enumerate() {
-            let mine = SurfaceModes::from_scaled(discretization(i), &velocities[layout.of(i)]);
-            *sum = std::mem::replace(sum, SurfaceModes::zero(0, 0)).plus(1.0, &mine);
-        }
-        progress.advance(suspension.bodies.len() / 2);
+        let often = self.kept.as_ref().map_or(Use::Once, |kept| Use::Often {
+            memory: kept.memory,
+        });
+        Ok(Interactions::new(
+            members.collect(),
+            tolerance,
+            often,
+            operators.clone(),
+            &|_| (),
+        )?)
     }
-    Ok(sum)
+}
+
+impl Finer {
+    /// The scaled modes of a part of the densities.
+    fn field(&self, part: Part, layers: &Layers) -> Vec<f64> {
+        let nodes = self.discretization.nodes().len();
+        let mut field = match part {
+            Part::Solved if self.class.tables.weights.double != 0.0 => {
+                layers.double.scaled_by_roots(&self.discretization)
+            }
+            Part::Forces if self.class.free().is_none() => Vec::new(),
+            Part::Solved | Part::Forces => layers.single.scaled_by_roots(&self.discretization),
+        };
+        field.resize(6 * (self.n_max + 1) * nodes, 0.0);
+        field
+    }
+}
+
+impl Own {
+    fn new(finer: &Finer) -> Result<Self, SuspensionError> {
+        let Finer {
+            class,
+            discretization,
+            n_max,
+        } = finer;
+        let weights = class.tables.weights;
+        if class.free().is_some() {
+            let assemble = ModalMatrices::assemble;
+            return Ok(Self::Free {
+                double: assemble(discretization, &DoubleLayer, 0.5, *n_max, &|| ())?,
+                single: ModalMatrices::of(LayerPotential::Single, discretization, 1)?,
+            });
+        }
+        if weights.double == 0.0 {
+            let single = ModalMatrices::of(LayerPotential::Single, discretization, *n_max)?;
+            return Ok(Self::Single(single));
+        }
+        let kernel = CombinedField {
+            eta: weights.single / weights.double,
+        };
+        let both = ModalMatrices::assemble(discretization, &kernel, 0.5, *n_max, &|| ())?;
+        Ok(Self::Both(both))
+    }
+
+    fn velocity(&self, discretization: &Discretization, layers: &Layers) -> SurfaceModes {
+        match self {
+            Self::Both(both) => both.apply(discretization, &layers.double),
+            Self::Single(single) => single.apply(discretization, &layers.single),
+            Self::Free { double, single } => {
+                let of_single = single.apply(discretization, &layers.single);
+                double
+                    .apply(discretization, &layers.double)
+                    .plus(1.0, &of_single)
+            }
+        }
+    }
 }
 
 impl Miss {
@@ -263,18 +344,10 @@ impl Miss {
         let order = discretization.order();
         let count = 2 * field.modes() + 1;
         let resolved = field.clone().truncated(n_max + 1);
-        let magnitude = |field: &SurfaceModes, k: usize| {
-            let speeds = (0..count).map(|l| {
-                let [r, t, z] = field.at(k, 2.0 * PI * l as f64 / count as f64);
-                (r * r + t * t + z * z).sqrt()
-            });
-            // `max` would pass over a NaN.
-            speeds.fold(0.0, |most: f64, x| if x.is_nan() { x } else { most.max(x) })
-        };
         let on_nodes = |field: &SurfaceModes| -> Vec<f64> {
             (0..discretization.nodes().len())
                 .into_par_iter()
-                .map(|k| magnitude(field, k))
+                .map(|k| field.length_at(k, count))
                 .collect()
         };
         let most = |speeds: &[f64]| speeds.iter().copied().fold(0.0, f64::max);

@@ -78,7 +78,7 @@ pub(crate) struct Class {
     pub tables: Arc<Tables>,
     solver: Solver,
     /// Of held bodies that move rigidly in the coarse space.
-    pub tractions: Option<RigidTractions>,
+    pub tractions: Option<Arc<RigidTractions>>,
 }
 
 #[derive(Debug)]
@@ -104,7 +104,7 @@ impl Class {
             ),
         };
         let tractions = match kind.role {
-            Role::Held(_) => Some(RigidTractions::new(&discretization)?),
+            Role::Held(_) => Some(Arc::new(RigidTractions::new(&discretization)?)),
             Role::Free => None,
         };
         Ok(Self {
@@ -190,6 +190,11 @@ impl Classes {
     /// The class of a body.
     pub fn of(&self, body: usize) -> &Arc<Class> {
         &self.classes[self.of[body]]
+    }
+
+    /// The place of a body's class among them.
+    pub fn index_of(&self, body: usize) -> usize {
+        self.of[body]
     }
 
     /// Classes.

@@ -12,6 +12,7 @@
 //! well enough.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use faer::MatMut;
 use nalgebra::{Matrix6, Vector3, Vector6};
@@ -169,9 +170,9 @@ fn coarse_points(
 }
 
 /// The rigid motions of all held bodies.
-pub(crate) struct Coarse<'t> {
+pub(crate) struct Coarse {
     /// The held bodies, with their tractions.
-    bodies: Vec<(usize, &'t RigidTractions)>,
+    bodies: Vec<(usize, Arc<RigidTractions>)>,
     /// Factors of $G$ transposed, in its place.
     rows: Vec<f64>,
     permutation: Permutation,
@@ -212,20 +213,20 @@ impl InLab {
     }
 }
 
-impl<'t> Coarse<'t> {
+impl Coarse {
     /// Factors $G$ for bodies with tractions; those without are free.
-    pub fn new(members: &[Member], tractions: &[Option<&'t RigidTractions>]) -> Option<Self> {
-        let bodies: Vec<(usize, &RigidTractions)> = tractions
-            .iter()
+    pub fn new(members: &[Member], tractions: Vec<Option<Arc<RigidTractions>>>) -> Option<Self> {
+        let bodies: Vec<(usize, Arc<RigidTractions>)> = tractions
+            .into_iter()
             .enumerate()
-            .filter_map(|(body, tractions)| Some((body, (*tractions)?)))
+            .filter_map(|(body, tractions)| Some((body, tractions?)))
             .collect();
         if bodies.len() < 2 {
             return None;
         }
         let in_lab: Vec<InLab> = bodies
             .iter()
-            .map(|&(body, tractions)| InLab::new(&members[body], tractions))
+            .map(|(body, tractions)| InLab::new(&members[*body], tractions))
             .collect();
         let size = 6 * bodies.len();
         // Row after row, which is the transposed matrix column after column; a body's six rows are one task.
@@ -257,20 +258,20 @@ impl<'t> Coarse<'t> {
 
     /// Improves a boundary velocity, scaled modes of all bodies.
     pub fn apply(&self, layout: &Layout, field: &mut [f64]) {
-        let of_all = self.bodies.par_iter().map(|&(body, tractions)| {
-            let motion = tractions.motion_of(&field[layout.of(body)]);
+        let of_all = self.bodies.par_iter().map(|(body, tractions)| {
+            let motion = tractions.motion_of(&field[layout.of(*body)]);
             motion.iter().copied().collect::<Vec<f64>>()
         });
         let before: Vec<f64> = of_all.collect::<Vec<_>>().concat();
         let mut after = before.clone();
         let column = MatMut::from_column_major_slice_mut(&mut after, before.len(), 1);
         solve_transpose(&self.rows, &self.permutation, column);
-        for (index, &(body, tractions)) in self.bodies.iter().enumerate() {
+        for (index, (body, tractions)) in self.bodies.iter().enumerate() {
             let change: [f64; 6] = std::array::from_fn(|k| {
                 let place = 6 * index + k;
                 after[place] - before[place]
             });
-            tractions.add(&change, &mut field[layout.of(body)]);
+            tractions.add(&change, &mut field[layout.of(*body)]);
         }
     }
 }

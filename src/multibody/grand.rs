@@ -11,6 +11,7 @@
 use nalgebra::{DMatrix, Vector3};
 
 use super::SuspensionError;
+use super::assembly::Questions;
 use super::suspension::{Motion, Suspension};
 use crate::body::rigid::{RigidMotion, Wrench};
 use crate::progress::Progress;
@@ -83,12 +84,14 @@ impl Suspension<'_> {
         let count = cluster.bodies.len();
         let mut matrix = DMatrix::zeros(6 * count, 6 * count);
         let mut error_estimate = 0.0f64;
-        let mut start = cluster.start(tolerance, progress)?;
+        cluster.check_question(tolerance)?;
+        let (mut cluster, gaps) = cluster.arranged(progress)?;
+        let mut start = cluster.start(&gaps, tolerance, Questions::Many)?;
         for column in 0..6 * count {
             let mut unit = [Vector3::zeros(); 2];
             unit[column % 6 / 3][column % 3] = 1.0;
             cluster.bodies[column / 6].motion = elementary(unit);
-            let round = cluster.converge(start, tolerance, progress)?;
+            let round = cluster.converge(start, tolerance, Questions::Many, progress)?;
             for body in 0..count {
                 let frame = &cluster.bodies[body].frame;
                 let [linear, angular] = match still {

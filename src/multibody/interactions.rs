@@ -13,7 +13,6 @@ use stokes_fmm::{FmmError, Output, Points, Singularities, Strengths, Stresslets,
 use super::near::{self, Near};
 use super::sums::{self, Operators, Sums};
 use super::tables::{Batches, Layout, Member, multiply};
-use crate::body::surface_grid::PointVectors;
 
 /// Why the interactions cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -30,6 +29,18 @@ pub enum InteractionError {
     Interrupted,
 }
 
+/// How often interactions are used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Use {
+    /// Once: nothing is kept.
+    Once,
+    /// Many times: rows for near points are kept as far as they fit into so many bytes.
+    Often {
+        /// Bytes.
+        memory: usize,
+    },
+}
+
 /// The interactions of some bodies.
 pub(crate) struct Interactions {
     members: Vec<Member>,
@@ -40,9 +51,12 @@ pub(crate) struct Interactions {
     positions: Vec<[f64; 3]>,
     normals: Vec<[f64; 3]>,
     near: Near,
+    often: Use,
     sums: Sums,
+    singularities: Singularities,
     /// Wall-clock seconds of all sums so far.
     pub seconds_of_sums: f64,
+    /// Room for products; none when at rest.
     own: Vec<f64>,
     strengths: Vec<near::Strengths>,
     stokeslets: Vec<[f64; 3]>,
@@ -50,14 +64,14 @@ pub(crate) struct Interactions {
 }
 
 impl Interactions {
-    /// The interactions to a `tolerance` at best; rows for near points take `memory` bytes at most.
+    /// The interactions to a `tolerance` at best.
     ///
     /// # Errors
     /// If a quadrature rule is missing.
     pub fn new(
         members: Vec<Member>,
         tolerance: f64,
-        memory: usize,
+        often: Use,
         operators: Operators,
         done: &(dyn Fn(usize) + Sync),
     ) -> Result<Self, InteractionError> {
@@ -85,31 +99,20 @@ impl Interactions {
             (true, false) => Singularities::Stokeslets,
             _ => Singularities::Stresslets,
         };
-        let room = |used: bool| vec![[0.0; 3]; if used { points.len() } else { 0 }];
+        let memory = match often {
+            Use::Once => 0,
+            Use::Often { memory } => memory,
+        };
         let near = Near::new(&members, tolerance, memory, done)?;
-        let strengths = members
-            .iter()
-            .enumerate()
-            .map(|(body, member)| near::Strengths {
-                points: member.tables.grid.vectors(),
-                upsampled: (member.tables.upsamplings.iter().enumerate())
-                    .map(|(level, upsampling)| {
-                        if near.is_upsampled(body, level) {
-                            upsampling.grid.vectors()
-                        } else {
-                            PointVectors::default()
-                        }
-                    })
-                    .collect(),
-            });
-        let strengths = strengths.collect();
         Ok(Self {
             near,
+            often,
             batches: Batches::new(&members),
-            own: vec![0.0; fields.len()],
-            strengths,
-            stokeslets: room(single),
-            stresslets: room(double),
+            own: Vec::new(),
+            strengths: Vec::new(),
+            stokeslets: Vec::new(),
+            stresslets: Vec::new(),
+            singularities,
             sums: Sums::new(operators, singularities, Output::Velocity, tolerance),
             seconds_of_sums: 0.0,
             members,
@@ -151,6 +154,7 @@ impl Interactions {
         velocities: &mut [f64],
         tolerance: f64,
     ) -> Result<(), InteractionError> {
+        self.make_room();
         self.spread(densities);
         let start = Instant::now();
         let few = sums::are_few(self.points.len(), self.points.len());
@@ -163,16 +167,13 @@ impl Interactions {
             self.sums.apply(points, &strengths, tolerance)?.velocity
         };
         self.seconds_of_sums += start.elapsed().as_secs_f64();
-        let members = &self.members;
-        if few {
-            self.own.fill(0.0);
-        } else {
+        self.own.clear();
+        self.own.resize(self.fields.len(), 0.0);
+        if !few {
             self.own.copy_from_slice(densities);
-            self.batches
-                .apply(&self.fields, &mut self.own, |body, n, columns, scratch| {
-                    multiply(&members[body].tables.point_sum, n, columns, scratch);
-                });
+            self.to_point_sums();
         }
+        let members = &self.members;
         let (fields, near) = (&self.fields, &self.near);
         let own = &self.own;
         let strengths = &self.strengths;
@@ -204,6 +205,44 @@ impl Interactions {
                     Ok(())
                 },
             )
+    }
+
+    /// What the sum over all points did to each body's own, from the densities in `own`.
+    fn to_point_sums(&mut self) {
+        let (members, fields) = (&self.members, &self.fields);
+        if self.often == Use::Once {
+            for (tables, batches) in self.batches.by_tables() {
+                let matrices = tables.new_point_sum();
+                batches.apply(fields, &mut self.own, |_, n, columns, scratch| {
+                    multiply(&matrices, n, columns, scratch);
+                });
+            }
+            return;
+        }
+        self.batches
+            .apply(fields, &mut self.own, |body, n, columns, scratch| {
+                multiply(members[body].tables.point_sum(), n, columns, scratch);
+            });
+    }
+
+    /// Gives back what only products need: it is made anew with the next one.
+    pub fn rest(&mut self) {
+        self.sums.rest();
+        (self.own, self.strengths) = (Vec::new(), Vec::new());
+        (self.stokeslets, self.stresslets) = (Vec::new(), Vec::new());
+    }
+
+    fn make_room(&mut self) {
+        if !self.strengths.is_empty() {
+            return;
+        }
+        let room = |used: bool| vec![[0.0; 3]; if used { self.points.len() } else { 0 }];
+        let bodies = 0..self.members.len();
+        self.strengths = bodies
+            .map(|body| self.near.strengths(&self.members, body))
+            .collect();
+        self.stokeslets = room(self.singularities != Singularities::Stresslets);
+        self.stresslets = room(self.singularities != Singularities::Stokeslets);
     }
 
     /// The velocities at all points, of the points of all other bodies. Of what neighbours on a body do to each other a sum has fewer digits
@@ -254,9 +293,9 @@ impl Interactions {
                 |(scratch, room), (body, (strengths, (mut stokeslets, mut stresslets)))| {
                     let Member { tables, frame } = &members[body];
                     let (grid, field) = (&tables.grid, &densities[fields.of(body)]);
-                    let upsampled = tables.upsamplings.iter().zip(&mut strengths.upsampled);
-                    for (level, (upsampling, strengths)) in upsampled.enumerate() {
-                        if near.is_upsampled(body, level) {
+                    let upsampled = near.upsamplings(body).zip(&mut strengths.upsampled);
+                    for (upsampling, strengths) in upsampled {
+                        if let Some(upsampling) = upsampling {
                             upsampling.to_points(field, room, strengths);
                         }
                     }

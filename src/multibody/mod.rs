@@ -6,6 +6,7 @@
 //! | [`flow`] | the flow at any points |
 //! | [`interactions`] | what bodies do to each other |
 
+pub(crate) mod assembly;
 pub(crate) mod check;
 pub(crate) mod class;
 pub(crate) mod coarse;
@@ -15,10 +16,13 @@ pub mod flow;
 mod further;
 pub mod grand;
 pub mod interactions;
+mod memory;
 mod meridian;
 pub(crate) mod near;
 mod resolution;
+mod rounds;
 pub(crate) mod solution;
+mod spheres;
 mod sums;
 pub mod suspension;
 pub(crate) mod system;

@@ -3,12 +3,14 @@
 //! There a sum over [more points](super::upsampling) takes the place of the panels' points or, nearer still, the panels' exact action. That is a linear
 //! map of the density: its rows are kept where memory allows, and made anew each time where it does not.
 
+use std::sync::Arc;
+
 use nalgebra::{Point3, Vector3};
 use panel_quadrature::QuadratureError;
 use rayon::prelude::*;
 
 use super::tables::Member;
-use super::upsampling::FACTORS;
+use super::upsampling::{self, Upsampling};
 use crate::body::far::Separation;
 use crate::body::flow::meridian;
 use crate::body::influence::Buffers;
@@ -47,8 +49,8 @@ const GRAIN: f64 = 1e-14;
 #[derive(Debug)]
 pub(crate) struct Near {
     visits: Vec<Vec<Visit>>,
-    /// Which upsamplings of each body are used.
-    upsampled: Vec<Vec<bool>>,
+    /// Those upsamplings of each body that are used.
+    upsampled: Vec<[Option<Arc<Upsampling>>; upsampling::LEVELS]>,
     /// Bytes of the rows that are kept.
     pub stored: usize,
 }
@@ -87,10 +89,13 @@ impl Near {
             .map(|body| visits(members, &surroundings, body))
             .collect();
         let mut stored = 0;
-        let mut upsampled = vec![vec![false; FACTORS.len()]; members.len()];
+        let mut upsampled = vec![[const { None }; upsampling::LEVELS]; members.len()];
         for visit in visits.iter_mut().flatten() {
             for &(_, level) in &visit.finer {
-                upsampled[visit.source][level] = true;
+                let used = &mut upsampled[visit.source][level];
+                if used.is_none() {
+                    *used = Some(members[visit.source].tables.upsampling(level)?);
+                }
             }
             let bytes = 8 * visit.len(members);
             if stored + bytes <= memory {
@@ -115,9 +120,20 @@ impl Near {
         })
     }
 
-    /// Whether an upsampling of a body is used.
-    pub fn is_upsampled(&self, body: usize, level: usize) -> bool {
-        self.upsampled[body][level]
+    /// The upsamplings of a body that are used.
+    pub fn upsamplings(&self, body: usize) -> impl Iterator<Item = Option<&Upsampling>> {
+        self.upsampled[body].iter().map(Option::as_deref)
+    }
+
+    /// Room for a body's density at its points, and at those of the upsamplings that are used.
+    pub fn strengths(&self, members: &[Member], body: usize) -> Strengths {
+        let upsampled = self.upsamplings(body).map(|upsampling| {
+            upsampling.map_or_else(PointVectors::default, |it| it.grid.vectors())
+        });
+        Strengths {
+            points: members[body].tables.grid.vectors(),
+            upsampled: upsampled.collect(),
+        }
     }
 
     /// Adds, to the velocities of a body's points in the laboratory (`velocity(point)`), what is exact less what the points of the panels do:
@@ -136,6 +152,7 @@ impl Near {
                 members,
                 field(visit.source),
                 &strengths[visit.source],
+                &self.upsampled[visit.source],
                 velocity,
                 &mut room,
             )?;
@@ -170,8 +187,8 @@ impl Surrounding {
             [tables.discretization.order(), tables.grid.azimuths()],
             tolerance,
         );
-        let finer = tables.upsamplings.iter().map(|upsampling| {
-            upsampling.separation(&tables.discretization, tables.n_max, tolerance)
+        let finer = (0..upsampling::LEVELS).map(|level| {
+            upsampling::separation(&tables.discretization, tables.n_max, level, tolerance)
         });
         let radius = tables.discretization.size();
         let scale = member.frame.scale();
@@ -312,6 +329,7 @@ impl Visit {
         members: &[Member],
         field: &[f64],
         strengths: &Strengths,
+        upsampled: &[Option<Arc<Upsampling>>],
         velocity: &mut [[f64; 3]],
         room: &mut Room,
     ) -> Result<(), QuadratureError> {
@@ -361,13 +379,15 @@ impl Visit {
                     better -= of_points(panel);
                 }
                 for &(panel, level) in own_finer {
-                    let of_more = tables.upsamplings[level].grid.panel_velocity(
-                        panel as usize,
-                        tables.weights,
-                        &strengths.upsampled[level],
-                        at,
-                    );
-                    better += of_more - of_points(panel);
+                    if let Some(upsampling) = &upsampled[level] {
+                        let of_more = upsampling.grid.panel_velocity(
+                            panel as usize,
+                            tables.weights,
+                            &strengths.upsampled[level],
+                            at,
+                        );
+                        better += of_more - of_points(panel);
+                    }
                 }
                 let correction = member.frame.vector_to_lab(better);
                 for k in 0..3 {

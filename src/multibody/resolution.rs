@@ -27,6 +27,9 @@ const DEEPEST: usize = 12;
 /// Most modes.
 const MOST_MODES: usize = 400;
 
+/// What all modes that are missing together may do, in the largest of them.
+const ALIASES: f64 = 8.0;
+
 /// The first resolutions for a tolerance.
 pub(crate) fn first(
     suspension: &Suspension<'_>,
@@ -160,11 +163,16 @@ fn graded(
     panels.graded_across_joints(curve)
 }
 
-/// Finer resolutions where a boundary velocity is off by more than `allowed`; bodies that are alike in kind stay so if both are refined.
-pub(crate) fn refined(kinds: &[Kind], misses: &[Miss], allowed: f64) -> Vec<Kind> {
+/// Finer resolutions where a boundary velocity is off by more than is `allowed` on a body; bodies that are alike in kind stay so if both are refined.
+pub(crate) fn refined(
+    kinds: &[Kind],
+    misses: &[Miss],
+    allowed: impl Fn(usize) -> f64,
+) -> Vec<Kind> {
     let mut groups: Vec<(&Kind, Vec<bool>, bool)> = Vec::new();
     let mut group_of = vec![None; kinds.len()];
     for (body, (kind, miss)) in kinds.iter().zip(misses).enumerate() {
+        let allowed = allowed(body);
         if miss.largest <= allowed {
             continue;
         }
@@ -220,8 +228,11 @@ fn wanted(kind: &Kind, miss: &Miss, allowed: f64) -> (Vec<bool>, bool) {
         .fold(0.0, |a: f64, &b| a.max(b));
     let more_modes = beyond > 0.25 * allowed;
     let worst = miss.panels.iter().fold(0.0, |a: f64, &b| a.max(b));
+    // Where modes are short, those that are missing are taken for lower ones on all panels.
+    let by_alias = if more_modes { ALIASES * beyond } else { 0.0 };
+    let threshold = allowed.max(0.02 * worst).max(by_alias);
     let marked: Vec<bool> = (miss.panels.iter())
-        .map(|&of_panel| of_panel > allowed.max(0.02 * worst))
+        .map(|&of_panel| of_panel > threshold)
         .collect();
     if more_modes || marked.contains(&true) {
         return (marked, more_modes);

@@ -1,21 +1,18 @@
-//! One solution of the equations of all bodies, at given resolutions.
-
-use std::sync::Arc;
-use std::time::Instant;
+//! What is imposed on the bodies, and the iteration that finds their densities.
 
 use nalgebra::Vector3;
 
 use super::SuspensionError;
-use super::class::{Class, Classes, Kind};
-use super::interactions::{InteractionError, Interactions};
-use super::sums::Operators;
-use super::suspension::{Body, Motion, Options, Suspension};
+use super::class::Classes;
+use super::interactions::InteractionError;
+use super::suspension::{Body, Motion, Options};
 use super::system::System;
-use super::tables::{Member, Tables};
+use super::tables::Layout;
 use crate::body::discretization::Discretization;
-use crate::body::layers::{LayerWeights, Layers};
+use crate::body::layers::Layers;
 use crate::body::linear_flow::LinearFlow;
 use crate::body::rigid::{RigidMotion, Wrench};
+use crate::body::shell::Shell;
 use crate::body::surface::SurfaceModes;
 use crate::krylov::{self, Control, KrylovError, Outcome, Stop};
 use crate::progress::Progress;
@@ -59,6 +56,10 @@ pub(crate) struct Solution {
     /// Rigid motions and what the bodies exert on the fluid, in their frames.
     pub motions: Vec<RigidMotion>,
     pub wrenches: Vec<Wrench>,
+    /// The largest speed that the iteration left on each body.
+    pub left: Vec<f64>,
+    /// The largest speed that was imposed.
+    pub largest_imposed: f64,
     pub iteration: Iteration,
     pub seconds: Seconds,
     pub unknowns: usize,
@@ -97,7 +98,7 @@ impl Imposed {
         background: &LinearFlow,
         discretization: &Discretization,
         n_max: usize,
-        free: Option<&crate::body::shell::Shell>,
+        free: Option<&Shell>,
     ) -> Self {
         let frame = &body.frame;
         let undisturbed = frame.flow_to_body(background).on(discretization);
@@ -129,191 +130,17 @@ impl Imposed {
     }
 }
 
-/// Solves for all bodies at the resolutions of `kinds`, from what an earlier solution says.
-pub(crate) fn solve(
-    suspension: &Suspension<'_>,
-    kinds: &[Kind],
-    care: Care,
-    known: &Classes,
-    before: Option<&Solution>,
-    operators: &Operators,
-    progress: &dyn Progress,
-) -> Result<(Solution, f64), SuspensionError> {
-    let start = Instant::now();
-    let classes = Classes::new(kinds, known, progress)?;
-    let spent = start.elapsed().as_secs_f64();
-    let factoring = spent * classes.share_of_factoring();
-    let mut seconds = Seconds {
-        assemble: spent - factoring,
-        factor: factoring,
-        ..Seconds::default()
-    };
-    let start = Instant::now();
-    let bodies = &suspension.bodies;
-    let class = |body: usize| -> &Class { classes.of(body) };
-    let members: Vec<Member> = (bodies.iter().enumerate())
-        .map(|(i, body)| Member {
-            tables: class(i).tables.clone(),
-            frame: body.frame,
-        })
-        .collect();
-    progress.begin("near points", bodies.len());
-    let done = |steps: usize| progress.advance(steps);
-    let interactions =
-        Interactions::new(members, care.product, care.memory, operators.clone(), &done)?;
-    let (points, near_points, near_bytes) = (
-        interactions.points(),
-        interactions.near().points(),
-        interactions.near().stored,
-    );
-    let imposed: Vec<Imposed> = (bodies.iter().enumerate())
-        .map(|(i, body)| {
-            let class = class(i);
-            let shell = class.free().map(|solver| solver.shell());
-            Imposed::new(
-                body,
-                &suspension.background,
-                &class.tables.discretization,
-                class.tables.n_max,
-                shell,
-            )
-        })
-        .collect();
-    if let Some(body) = imposed.iter().position(|i| !i.largest.is_finite()) {
-        return Err(SuspensionError::Velocity { body });
-    }
-    let largest = imposed.iter().fold(0.0f64, |most, i| most.max(i.largest));
-    let layout = interactions.layout().clone();
-    let mut data = vec![0.0; layout.len()];
-    let mut forced = vec![0.0; layout.len()];
-    for (i, imposed) in imposed.iter().enumerate() {
-        let class = class(i);
-        let discretization = &class.tables.discretization;
-        let mut velocity = imposed.velocity.clone();
-        if let (Some(single), Some(solver)) = (&imposed.single, class.free()) {
-            velocity = velocity.plus(-1.0, &solver.single_layer(single));
-            copy_modes(
-                &mut forced[layout.of(i)],
-                &single.scaled_by_roots(discretization),
-            );
-        }
-        copy_modes(
-            &mut data[layout.of(i)],
-            &velocity.scaled_by_roots(discretization),
-        );
-    }
-    if forced.iter().any(|&x| x != 0.0) {
-        let mut velocities = vec![0.0; layout.len()];
-        single_layers(bodies, &classes, care.product, operators)?.add_velocities(
-            &forced,
-            &mut velocities,
-            care.product,
-        )?;
-        for (data, velocity) in data.iter_mut().zip(&velocities) {
-            *data -= velocity;
-        }
-    }
-    seconds.near = start.elapsed().as_secs_f64();
-    let start = Instant::now();
-    let mut system = System::new(&classes, interactions, suspension.options.two_level);
-    let first = match before {
-        Some(before) => Some(start_from(before, &classes, &layout)?),
-        None => None,
-    };
-    let (unknown, iteration) = iterate(
-        &mut system,
-        &data,
-        first,
-        care,
-        &suspension.options,
-        progress,
-    )?;
-    let densities = system.solve_alone_of(&unknown);
-    seconds.iterate = start.elapsed().as_secs_f64();
-    seconds.sum = system.interactions.seconds_of_sums;
-    let mut solution = Solution {
-        unknown: Vec::new(),
-        layers: Vec::new(),
-        motions: Vec::new(),
-        wrenches: Vec::new(),
-        iteration,
-        seconds,
-        unknowns: (0..bodies.len())
-            .map(|i| class(i).factors().unknowns())
-            .sum(),
-        points,
-        near_points,
-        near_bytes,
-        classes: classes.clone(),
-    };
-    for (i, imposed) in imposed.into_iter().enumerate() {
-        let class = class(i);
-        let discretization = &class.tables.discretization;
-        let of = |field: &[f64]| SurfaceModes::from_scaled(discretization, &field[layout.of(i)]);
-        let density = of(&densities);
-        let frame = &bodies[i].frame;
-        let (motion, layers) = match (class.free(), imposed.single) {
-            (Some(solver), Some(single)) => (
-                -solver.shell().projection(discretization, &density),
-                Layers {
-                    double: density,
-                    single,
-                },
-            ),
-            _ => (
-                match bodies[i].motion {
-                    Motion::Given(motion) => frame.motion_to_body(motion),
-                    Motion::Free(_) => RigidMotion::rest(),
-                },
-                Layers::weighted(&density, class.tables.weights),
-            ),
-        };
-        solution.unknown.push(of(&unknown));
-        solution.motions.push(motion);
-        solution.wrenches.push(match bodies[i].motion {
-            Motion::Given(_) => Wrench::of(discretization, &layers.single),
-            Motion::Free(wrench) => frame.wrench_to_body(wrench),
-        });
-        solution.layers.push(layers);
-    }
-    Ok((solution, largest))
-}
-
 /// Copies the modes that both have.
-fn copy_modes(to: &mut [f64], from: &[f64]) {
+pub(crate) fn copy_modes(to: &mut [f64], from: &[f64]) {
     let count = to.len().min(from.len());
     to[..count].copy_from_slice(&from[..count]);
 }
 
-/// The interactions of single layers on the same points.
-fn single_layers(
-    bodies: &[Body<'_>],
-    classes: &Classes,
-    tolerance: f64,
-    operators: &Operators,
-) -> Result<Interactions, InteractionError> {
-    let tables = classes.iter().map(|class| {
-        let of = &class.tables;
-        let single = Tables::new(of.discretization.clone(), of.n_max, LayerWeights::SINGLE)?;
-        Ok((class, Arc::new(single)))
-    });
-    let tables: Vec<(&Arc<Class>, Arc<Tables>)> =
-        tables.collect::<Result<_, InteractionError>>()?;
-    let members = (bodies.iter().enumerate()).filter_map(|(i, body)| {
-        let mine = |(class, _): &&(&Arc<Class>, Arc<Tables>)| Arc::ptr_eq(class, classes.of(i));
-        Some(Member {
-            tables: tables.iter().find(mine)?.1.clone(),
-            frame: body.frame,
-        })
-    });
-    Interactions::new(members.collect(), tolerance, 0, operators.clone(), &|_| ())
-}
-
 /// The unknowns of an earlier solution at these resolutions.
-fn start_from(
+pub(crate) fn start_from(
     before: &Solution,
     classes: &Classes,
-    layout: &super::tables::Layout,
+    layout: &Layout,
 ) -> Result<Vec<f64>, SuspensionError> {
     let mut start = vec![0.0; layout.len()];
     for (i, unknown) in before.unknown.iter().enumerate() {
@@ -328,15 +155,24 @@ fn start_from(
     Ok(start)
 }
 
+/// What an iteration ends with.
+pub(crate) struct Iterated {
+    pub unknown: Vec<f64>,
+    /// The residual.
+    pub left: Vec<f64>,
+    pub iteration: Iteration,
+}
+
 /// Iterates from a first unknown, if there is one: solves for what it lacks.
-fn iterate(
-    system: &mut System<'_>,
+pub(crate) fn iterate(
+    system: &mut System,
     data: &[f64],
     first: Option<Vec<f64>>,
     care: Care,
     options: &Options,
     progress: &dyn Progress,
-) -> Result<(Vec<f64>, Iteration), SuspensionError> {
+) -> Result<Iterated, SuspensionError> {
+    system.products = 0;
     let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
     let scale = norm(data);
     let mut lacking = data.to_vec();
@@ -360,7 +196,11 @@ fn iterate(
             stop: Stop::Converged,
             history: vec![reduced],
         };
-        return Ok((first.unwrap_or(lacking), iteration));
+        return Ok(Iterated {
+            unknown: first.unwrap_or_else(|| vec![0.0; data.len()]),
+            left: lacking,
+            iteration,
+        });
     }
     let control = Control {
         tolerance,
@@ -393,6 +233,7 @@ fn iterate(
         solution,
         iterations,
         residual,
+        residual_vector,
         stop,
         history,
         ..
@@ -411,5 +252,9 @@ fn iterate(
         stop,
         history: history.iter().map(|residual| residual * reduced).collect(),
     };
-    Ok((unknown, iteration))
+    Ok(Iterated {
+        unknown,
+        left: residual_vector,
+        iteration,
+    })
 }

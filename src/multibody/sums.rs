@@ -88,6 +88,11 @@ impl Sums {
         }
     }
 
+    /// Lets go of the plan.
+    pub fn rest(&mut self) {
+        self.planned = None;
+    }
+
     /// The flow of `strengths` at the targets to a tolerance, or somewhat better. The points must be the same each time.
     pub fn apply(
         &mut self,

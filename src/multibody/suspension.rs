@@ -30,19 +30,18 @@
 //! # }
 //! ```
 
-use std::f64::consts::PI;
 use std::sync::Arc;
 use std::time::Instant;
 
 use nalgebra::{Matrix3, Point3};
 
 use super::SuspensionError;
-use super::check::{Miss, misses};
+use super::assembly::Questions;
 use super::class::{Classes, Kind, Role};
 use super::contact::{Gap, Placed, gaps};
 use super::flow::{BodyLayers, SuspensionFlow};
-use super::resolution::{first, refined};
-use super::solution::{Care, Iteration, Solution, solve};
+use super::rounds::{Converged, Round, Work};
+use super::solution::Iteration;
 use super::sums::Operators;
 use crate::body::dirichlet::Formulation;
 use crate::body::frame::Frame;
@@ -53,7 +52,7 @@ use crate::body::rigid::{RigidMotion, Wrench};
 use crate::body::stresslet::stresslet;
 use crate::curve::GeneratingCurve;
 use crate::kernel::FlowAt;
-use crate::krylov::{Method, Stop};
+use crate::krylov::Method;
 use crate::progress::Progress;
 
 /// A body: its shape, where it is, and what is known of its motion.
@@ -116,7 +115,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
-            method: Method::Gmres { restart: 60 },
+            method: Method::Gmres { restart: 200 },
             max_iterations: 200,
             residual: None,
             two_level: true,
@@ -137,7 +136,8 @@ pub struct BodyAnswer {
     pub stresslet: Matrix3<f64>,
     /// By how much the velocity is off on its surface, at most.
     pub boundary_error: f64,
-    /// The resolution it was computed with.
+    /// The resolution it was computed with, in its [frame in the flow](BodyLayers::frame): where resolutions are chosen, spheres without slip
+    /// look at their nearest neighbour.
     pub resolution: Resolution,
 }
 
@@ -194,32 +194,8 @@ pub struct Timings {
     pub refine: f64,
 }
 
-/// Residuals and products are better than the tolerance by these factors.
-const RESIDUAL: f64 = 0.1;
-const PRODUCT: f64 = 0.04;
-/// How far the estimate stays above what the boundary velocity is off by.
-const SAFETY: f64 = 2.0;
-/// What is left to rounding.
-const ROUNDING: f64 = 1e-14;
-/// Forces below this part of what the largest speed would make them count as if they were that large.
-const SMALL: f64 = 1e-2;
-/// Solutions, each finer than the one before, and how many in a row may gain less than a factor of two.
-const ROUNDS: usize = 10;
-const PATIENCE: usize = 2;
-/// What finer resolutions aim at, in tolerances: next time the estimate is to be below it, and not about it.
-const AIM: f64 = 0.4;
-/// Estimates that miss the tolerance by less may do so for other reasons than the resolution.
-const NEARLY: f64 = 10.0;
-/// Gaps of so many sizes of a body matter to its resolution.
-const REACH: f64 = 1.0;
-/// The largest tolerance to choose resolutions for.
-const COARSEST: f64 = 1e-2;
-/// An iteration that stagnates or is cut short at so many times its residual is still worth an answer: the estimate tells how much.
-const STALLED: f64 = 100.0;
 /// The smallest tolerance that doubles can serve.
 const SMALLEST_TOLERANCE: f64 = 1e-14;
-/// Least relative residual and product.
-const LEAST: f64 = 1e-13;
 
 impl<'a> Suspension<'a> {
     /// Bodies in a fluid at rest: nothing happens until they are given something to do.
@@ -253,9 +229,18 @@ impl<'a> Suspension<'a> {
         self.check_question(tolerance)?;
         self.gaps(0.0, progress)?;
         let kinds = self.kinds(resolutions)?;
-        self.check_memory(&kinds, "panels, order and modes by hand")?;
+        self.check_memory(&kinds, Questions::One, "panels, order and modes by hand")?;
         let (known, operators) = (Classes::default(), Operators::default());
-        let round = self.round(&kinds, tolerance, &known, None, &operators, progress)?;
+        let mut assembly = self.assemble(
+            &kinds,
+            tolerance,
+            Questions::One,
+            &known,
+            &operators,
+            progress,
+        )?;
+        let round = self.round(&mut assembly, None, progress)?;
+        drop(assembly);
         let work = Work::default().and(&round.solution.iteration);
         self.answer(round, tolerance, work, begin, progress)
     }
@@ -271,113 +256,23 @@ impl<'a> Suspension<'a> {
         progress: &dyn Progress,
     ) -> Result<Answer, SuspensionError> {
         let begin = Instant::now();
-        let start = self.start(tolerance, progress)?;
-        let Converged { best, work, .. } = self.converge(start, tolerance, progress)?;
-        self.answer(best, tolerance, work, begin, progress)
-    }
-
-    /// The first resolutions for a tolerance.
-    pub(crate) fn start(
-        &self,
-        tolerance: f64,
-        progress: &dyn Progress,
-    ) -> Result<Start, SuspensionError> {
         if self.bodies.is_empty() {
             return Err(SuspensionError::Empty);
         }
         self.check_question(tolerance)?;
-        let gaps = self.gaps(REACH, progress)?;
-        // Where memory does not do for the tolerance, the best that it does for: the estimate will tell.
-        let mut looser = tolerance;
-        loop {
-            let kinds = self.kinds(&first(self, &gaps, looser)?)?;
-            match self.check_memory(&kinds, "the coarsest resolutions that make sense") {
-                Ok(()) => {
-                    return Ok(Start {
-                        kinds,
-                        known: Classes::default(),
-                        operators: Operators::default(),
-                    });
-                }
-                Err(error) if looser > COARSEST => return Err(error),
-                Err(_) => looser *= 10.0,
-            }
-        }
-    }
-
-    /// Finer and finer solutions until the estimated error is below the tolerance or no longer falls.
-    pub(crate) fn converge(
-        &self,
-        start: Start,
-        tolerance: f64,
-        progress: &dyn Progress,
-    ) -> Result<Converged, SuspensionError> {
-        let Start {
-            mut kinds,
-            known,
-            operators,
-        } = start;
-        let mut latest = self.round(&kinds, tolerance, &known, None, &operators, progress)?;
-        let mut work = Work::default();
-        let mut best = latest.clone();
-        let mut without_gain = 0;
-        for _ in 1..ROUNDS {
-            if best.error_estimate <= tolerance || without_gain > PATIENCE {
-                break;
-            }
-            let worst = latest.misses.iter().map(|miss| miss.largest);
-            let allowed = AIM * worst.fold(0.0, f64::max) * tolerance / latest.error_estimate;
-            let finer = refined(&kinds, &latest.misses, allowed);
-            if needed_memory(&finer, &self.options) > self.memory() {
-                break;
-            }
-            kinds = finer;
-            work = work.and(&latest.solution.iteration);
-            let known = &latest.solution.classes;
-            // What is left near the end may be of iteration and sums, too.
-            let missed = latest.error_estimate / tolerance;
-            let care = if missed < NEARLY {
-                0.5 * tolerance / missed
-            } else {
-                tolerance
-            };
-            let next = self.round(
-                &kinds,
-                care,
-                known,
-                Some(&latest.solution),
-                &operators,
-                progress,
-            )?;
-            let gain = next.error_estimate < 0.5 * best.error_estimate;
-            without_gain = if gain { 0 } else { without_gain + 1 };
-            if next.error_estimate < best.error_estimate {
-                best = next.clone();
-            }
-            latest = next;
-        }
-        work = work.and(&latest.solution.iteration);
-        Ok(Converged {
-            best,
-            operators,
-            work,
-        })
-    }
-
-    fn check_memory(&self, kinds: &[Kind], what: &'static str) -> Result<(), SuspensionError> {
-        let (needed, budget) = (needed_memory(kinds, &self.options), self.memory());
-        if needed <= budget {
-            return Ok(());
-        }
-        Err(SuspensionError::Memory {
-            what,
-            needed: gibibytes(needed),
-            budget: gibibytes(budget),
-        })
+        let (arranged, gaps) = self.arranged(progress)?;
+        let start = arranged.start(&gaps, tolerance, Questions::One)?;
+        let Converged { best, work, .. } =
+            arranged.converge(start, tolerance, Questions::One, progress)?;
+        arranged.answer(best, tolerance, work, begin, progress)
     }
 
     /// How far the bodies are apart whose gap is below `reach` sizes; an error if any are not.
-    fn gaps(&self, reach: f64, progress: &dyn Progress) -> Result<Vec<Gap>, SuspensionError> {
+    pub(crate) fn gaps(
+        &self,
+        reach: f64,
+        progress: &dyn Progress,
+    ) -> Result<Vec<Gap>, SuspensionError> {
         progress.begin("gaps", 0);
         let placed: Vec<Placed<'_>> = (self.bodies.iter())
             .map(|body| {
@@ -407,13 +302,8 @@ impl<'a> Suspension<'a> {
         Ok(())
     }
 
-    /// Bytes that everything may take.
-    fn memory(&self) -> usize {
-        self.options.memory.unwrap_or_else(default_memory)
-    }
-
     /// Refuses questions that make no sense.
-    fn check_question(&self, tolerance: f64) -> Result<(), SuspensionError> {
+    pub(crate) fn check_question(&self, tolerance: f64) -> Result<(), SuspensionError> {
         if !(SMALLEST_TOLERANCE..1.0).contains(&tolerance) {
             return Err(SuspensionError::Tolerance(tolerance));
         }
@@ -423,7 +313,10 @@ impl<'a> Suspension<'a> {
         self.check_wrenches()
     }
 
-    fn kinds(&self, resolutions: &[Arc<Resolution>]) -> Result<Vec<Kind>, SuspensionError> {
+    pub(crate) fn kinds(
+        &self,
+        resolutions: &[Arc<Resolution>],
+    ) -> Result<Vec<Kind>, SuspensionError> {
         if self.bodies.is_empty() {
             return Err(SuspensionError::Empty);
         }
@@ -440,102 +333,6 @@ impl<'a> Suspension<'a> {
             .collect())
     }
 
-    fn care(&self, tolerance: f64, memory: usize) -> Care {
-        let residual = self.options.residual.unwrap_or(RESIDUAL * tolerance);
-        Care {
-            residual: residual.max(LEAST),
-            product: (PRODUCT * tolerance).min(0.4 * residual).max(LEAST),
-            memory,
-        }
-    }
-
-    /// One solution, and by how much it is off.
-    fn round(
-        &self,
-        kinds: &[Kind],
-        tolerance: f64,
-        known: &Classes,
-        before: Option<&Solution>,
-        operators: &Operators,
-        progress: &dyn Progress,
-    ) -> Result<Round, SuspensionError> {
-        let rest = self
-            .memory()
-            .saturating_sub(needed_memory(kinds, &self.options));
-        let care = self.care(tolerance, rest);
-        let (solution, imposed) = solve(self, kinds, care, known, before, operators, progress)?;
-        let Iteration {
-            iterations,
-            residual,
-            stop,
-            ..
-        } = solution.iteration;
-        if stop != Stop::Converged
-            && (stop == Stop::Breakdown || residual > STALLED * care.residual)
-        {
-            return Err(SuspensionError::NotConverged {
-                iterations,
-                residual,
-                wanted: care.residual,
-                stop,
-            });
-        }
-        let start = Instant::now();
-        let misses = misses(self, &solution, care.product, operators, progress)?;
-        let speed = self.largest_speed(&solution, imposed);
-        let error_estimate = self.error_estimate(&solution, &misses, speed);
-        Ok(Round {
-            solution,
-            misses,
-            error_estimate,
-            speed,
-            estimate: start.elapsed().as_secs_f64(),
-        })
-    }
-
-    /// Of what is imposed, and of free bodies.
-    fn largest_speed(&self, solution: &Solution, imposed: f64) -> f64 {
-        let speeds = self.bodies.iter().enumerate().map(|(i, body)| {
-            let motion = &solution.motions[i];
-            let size = solution.classes.of(i).tables.discretization.size();
-            match body.motion {
-                Motion::Given(_) => 0.0,
-                Motion::Free(_) => {
-                    (motion.velocity.norm()).max(size * motion.angular_velocity.norm())
-                }
-            }
-        });
-        speeds.fold(imposed, f64::max)
-    }
-
-    fn error_estimate(&self, solution: &Solution, misses: &[Miss], speed: f64) -> f64 {
-        let worst = misses.iter().fold(0.0f64, |most, miss| {
-            if miss.largest.is_nan() {
-                f64::INFINITY
-            } else {
-                most.max(miss.largest)
-            }
-        });
-        if worst == 0.0 {
-            return 0.0;
-        }
-        let velocities = worst / speed;
-        // A boundary velocity takes 6 pi size times itself to hold back, more or less; free bodies are known to have no such force.
-        let mut force = 0.0f64;
-        let mut scale = 0.0f64;
-        for (i, body) in self.bodies.iter().enumerate() {
-            if let Motion::Given(_) = body.motion {
-                let size = body.frame.scale() * solution.classes.of(i).tables.discretization.size();
-                let wrench = body.frame.wrench_to_lab(solution.wrenches[i]);
-                let found = wrench.force.norm().max(wrench.torque.norm() / size);
-                force = force.max(6.0 * PI * size * misses[i].largest);
-                scale = scale.max(found).max(SMALL * 6.0 * PI * size * speed);
-            }
-        }
-        let forces = if force == 0.0 { 0.0 } else { force / scale };
-        SAFETY * velocities.max(forces) + ROUNDING
-    }
-
     fn answer(
         &self,
         round: Round,
@@ -549,7 +346,7 @@ impl<'a> Suspension<'a> {
             misses,
             error_estimate,
             speed,
-            estimate,
+            seconds: estimate,
         } = round;
         let bodies = self.bodies.iter().enumerate().map(|(i, body)| {
             let class = solution.classes.of(i);
@@ -625,43 +422,6 @@ impl<'a> Suspension<'a> {
     }
 }
 
-/// Bytes that solving takes beside the rows of near points: factors and point sums of each kind and of its finer surface, and for
-/// every point what the fast sum and the vectors of the iteration take.
-fn needed_memory(kinds: &[Kind], options: &Options) -> usize {
-    let mut distinct: Vec<&Kind> = Vec::new();
-    let mut points = 0;
-    for kind in kinds {
-        points += kind.points();
-        if !distinct.contains(&kind) {
-            distinct.push(kind);
-        }
-    }
-    let entries: f64 = distinct.iter().map(|kind| kind.entries()).sum();
-    let vectors = match options.method {
-        Method::Gmres { restart } => restart.min(VECTORS) + 8,
-        Method::BiCgStab => 12,
-    };
-    (8.0 * MATRICES * entries) as usize + points * (SUM_BYTES + 24 * vectors)
-}
-
-/// Matrices in memory, in matrices of one kind: factors, point sums, and those of the check.
-const MATRICES: f64 = 5.0;
-/// Bytes that a fast sum takes for each point of a finer surface, by each point of the surface itself.
-const SUM_BYTES: usize = 4000;
-/// Vectors that an iteration keeps as a rule.
-const VECTORS: usize = 25;
-
-fn gibibytes(bytes: usize) -> f64 {
-    bytes as f64 / f64::from(1 << 30)
-}
-
-/// Seven tenths of what the machine has.
-fn default_memory() -> usize {
-    let mut system = sysinfo::System::new();
-    system.refresh_memory();
-    (system.total_memory() as f64 * 0.7) as usize
-}
-
 /// The distance of the farthest point of a curve from the origin, or nearly.
 fn extent(curve: &dyn GeneratingCurve) -> f64 {
     let ends = curve.breakpoints();
@@ -671,59 +431,4 @@ fn extent(curve: &dyn GeneratingCurve) -> f64 {
         point.r.hypot(point.z)
     });
     far.fold(0.0, f64::max)
-}
-
-/// Where to begin.
-pub(crate) struct Start {
-    kinds: Vec<Kind>,
-    /// What is factored already, and the operators of sums.
-    known: Classes,
-    operators: Operators,
-}
-
-/// Where it ended.
-pub(crate) struct Converged {
-    pub best: Round,
-    operators: Operators,
-    work: Work,
-}
-
-/// Iterations and products made.
-#[derive(Clone, Copy, Debug, Default)]
-struct Work {
-    iterations: usize,
-    products: usize,
-}
-
-impl Work {
-    /// With those of one more iteration.
-    fn and(self, iteration: &Iteration) -> Self {
-        Self {
-            iterations: self.iterations + iteration.iterations,
-            products: self.products + iteration.products,
-        }
-    }
-}
-
-impl Converged {
-    /// To go on with the next question about the same bodies.
-    pub fn into_start(self) -> Start {
-        let classes = self.best.solution.classes;
-        let kinds = (0..self.best.solution.layers.len()).map(|body| classes.of(body).kind.clone());
-        Start {
-            kinds: kinds.collect(),
-            known: classes,
-            operators: self.operators,
-        }
-    }
-}
-
-/// A solution with what is known of its error.
-#[derive(Clone, Debug)]
-pub(crate) struct Round {
-    pub solution: Solution,
-    misses: Vec<Miss>,
-    pub error_estimate: f64,
-    speed: f64,
-    estimate: f64,
 }

@@ -7,39 +7,43 @@
 //! whose unknown $y$ is what each body's layers make on its own surface. A body's own matrix is never applied.
 
 use super::class::Classes;
-use super::coarse::{Coarse, RigidTractions};
+use super::coarse::Coarse;
 use super::interactions::{InteractionError, Interactions};
 use super::tables::Batches;
 use crate::krylov::Operator;
 
 /// The operator of the iteration.
-pub(crate) struct System<'c> {
-    classes: &'c Classes,
+pub(crate) struct System {
+    classes: Classes,
     pub interactions: Interactions,
     batches: Batches,
-    coarse: Option<Coarse<'c>>,
+    coarse: Option<Coarse>,
     density: Vec<f64>,
     /// Products made.
     pub products: usize,
 }
 
-impl<'c> System<'c> {
+impl System {
     /// The system, with the second level of the preconditioner if `two_level`.
-    pub fn new(classes: &'c Classes, interactions: Interactions, two_level: bool) -> Self {
+    pub fn new(classes: Classes, interactions: Interactions, two_level: bool) -> Self {
         let members = interactions.members();
-        let tractions: Vec<Option<&RigidTractions>> = (0..members.len())
-            .map(|body| classes.of(body).tractions.as_ref())
-            .collect();
+        let tractions = (0..members.len()).map(|body| classes.of(body).tractions.clone());
         Self {
             coarse: two_level
-                .then(|| Coarse::new(members, &tractions))
+                .then(|| Coarse::new(members, tractions.collect()))
                 .flatten(),
             batches: Batches::new(members),
-            density: vec![0.0; interactions.layout().len()],
+            density: Vec::new(),
             classes,
             interactions,
             products: 0,
         }
+    }
+
+    /// Gives back what only products need.
+    pub fn rest(&mut self) {
+        self.density = Vec::new();
+        self.interactions.rest();
     }
 
     /// What the densities make on their own bodies, from the unknown of the preconditioned iteration.
@@ -88,7 +92,8 @@ impl<'c> System<'c> {
     ) -> Result<(), InteractionError> {
         self.products += 1;
         let mut density = std::mem::take(&mut self.density);
-        density.copy_from_slice(velocities);
+        density.clear();
+        density.extend_from_slice(velocities);
         self.solve_alone(&mut density);
         let added = self
             .interactions
@@ -98,7 +103,7 @@ impl<'c> System<'c> {
     }
 }
 
-impl Operator for System<'_> {
+impl Operator for System {
     type Error = InteractionError;
 
     fn apply(&mut self, x: &[f64], y: &mut [f64], tolerance: f64) -> Result<(), InteractionError> {

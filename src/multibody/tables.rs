@@ -1,12 +1,12 @@
 //! What depends on a shape, its resolution and its layers alone: made once, shared by all bodies that are alike in them.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use faer::MatMut;
 use panel_quadrature::QuadratureError;
 use rayon::prelude::*;
 
-use super::upsampling::{FACTORS, Upsampling};
+use super::upsampling::{self, Upsampling};
 use crate::body::discretization::Discretization;
 use crate::body::frame::Frame;
 use crate::body::influence::Influence;
@@ -22,10 +22,9 @@ pub(crate) struct Tables {
     pub weights: LayerWeights,
     pub grid: SurfaceGrid,
     pub influence: Influence,
-    /// With more points, from few to many.
-    pub upsamplings: Vec<Upsampling>,
-    /// What the sum over the body's points does at those points.
-    pub point_sum: ModalMatrices,
+    /// Made when they are first wanted: few problems need all.
+    upsamplings: [OnceLock<Arc<Upsampling>>; upsampling::LEVELS],
+    point_sum: OnceLock<ModalMatrices>,
 }
 
 impl Tables {
@@ -35,24 +34,36 @@ impl Tables {
         n_max: usize,
         weights: LayerWeights,
     ) -> Result<Self, QuadratureError> {
-        let grid = SurfaceGrid::new(&discretization, n_max);
         Ok(Self {
             influence: Influence::new(discretization.order(), n_max)?,
-            upsamplings: FACTORS
-                .into_iter()
-                .map(|factor| Upsampling::new(&discretization, n_max, factor))
-                .collect::<Result<_, _>>()?,
-            point_sum: ModalMatrices::of_point_sum(
-                &discretization,
-                weights,
-                n_max,
-                grid.azimuths(),
-            ),
-            grid,
+            upsamplings: Default::default(),
+            point_sum: OnceLock::new(),
+            grid: SurfaceGrid::new(&discretization, n_max),
             n_max,
             weights,
             discretization,
         })
+    }
+
+    /// The body with more points; levels go from few to many.
+    pub fn upsampling(&self, level: usize) -> Result<Arc<Upsampling>, QuadratureError> {
+        let made = &self.upsamplings[level];
+        if let Some(upsampling) = made.get() {
+            return Ok(upsampling.clone());
+        }
+        let upsampling = Upsampling::new(&self.discretization, self.n_max, level)?;
+        Ok(made.get_or_init(|| Arc::new(upsampling)).clone())
+    }
+
+    /// What the sum over the body's points does at those points.
+    pub fn point_sum(&self) -> &ModalMatrices {
+        self.point_sum.get_or_init(|| self.new_point_sum())
+    }
+
+    /// The same for those who need it once: it is not kept.
+    pub fn new_point_sum(&self) -> ModalMatrices {
+        let azimuths = self.grid.azimuths();
+        ModalMatrices::of_point_sum(&self.discretization, self.weights, self.n_max, azimuths)
     }
 }
 
@@ -108,7 +119,7 @@ pub(crate) struct Batches {
     batches: Vec<Batch>,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Batch {
     tables: Arc<Tables>,
     bodies: Vec<usize>,
@@ -142,6 +153,16 @@ impl Batches {
         Self {
             batches: batches.collect(),
         }
+    }
+
+    /// Class by class.
+    pub fn by_tables(&self) -> impl Iterator<Item = (&Tables, Self)> {
+        let alike = |batches: &[Batch]| Self {
+            batches: batches.to_vec(),
+        };
+        let same = |a: &Batch, b: &Batch| Arc::ptr_eq(&a.tables, &b.tables);
+        let classes = self.batches.chunk_by(same);
+        classes.map(move |batches| (&*batches[0].tables, alike(batches)))
     }
 
     /// Applies to the columns of each mode of each body, in place, a matrix of its tables: `operator` is given a body that has those tables, the mode, the

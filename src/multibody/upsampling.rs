@@ -9,15 +9,28 @@ use crate::body::discretization::Discretization;
 use crate::body::far::Separation;
 use crate::body::surface_grid::{PointVectors, SurfaceGrid, azimuths};
 
-/// By how much nodes of a panel and azimuths are multiplied.
-pub(crate) const FACTORS: [usize; 2] = [2, 4];
+/// How many surfaces with more points there are.
+pub(crate) const LEVELS: usize = 2;
+
+/// By how much nodes of a panel and azimuths are multiplied on each level.
+const FACTORS: [usize; LEVELS] = [2, 4];
+
+/// From where on the points of a level resolve what the panels do to `tolerance`, for densities that the surface's own nodes and modes resolve.
+pub(crate) fn separation(
+    discretization: &Discretization,
+    n_max: usize,
+    level: usize,
+    tolerance: f64,
+) -> Separation {
+    let factor = FACTORS[level];
+    let points = [factor * discretization.order(), azimuths(factor * n_max)];
+    Separation::of_resolved(discretization, n_max, points, tolerance)
+}
 
 /// The same panels with more nodes, each on more azimuths.
 #[derive(Debug)]
 pub(crate) struct Upsampling {
     pub grid: SurfaceGrid,
-    azimuths: usize,
-    order: usize,
     /// From a panel's nodes to its many.
     interpolation: Mat<f64>,
     /// Square roots of the weights of nodes, and of the many nodes.
@@ -26,43 +39,25 @@ pub(crate) struct Upsampling {
 }
 
 impl Upsampling {
-    /// With so many times the nodes and azimuths.
+    /// The surface of a level.
     pub fn new(
         discretization: &Discretization,
         n_max: usize,
-        factor: usize,
+        level: usize,
     ) -> Result<Self, QuadratureError> {
-        let order = discretization.order();
+        let (factor, order) = (FACTORS[level], discretization.order());
         let many = discretization.with_order(factor * order)?;
-        let azimuths = azimuths(factor * n_max);
         let roots = |of: &Discretization| -> Vec<f64> {
             of.nodes().iter().map(|node| node.weight.sqrt()).collect()
         };
         Ok(Self {
-            grid: SurfaceGrid::with_azimuths(&many, n_max, azimuths),
+            grid: SurfaceGrid::with_azimuths(&many, n_max, azimuths(factor * n_max)),
             interpolation: discretization
                 .basis()
                 .interpolation_matrix(many.basis().nodes())?,
             roots: roots(discretization),
             many_roots: roots(&many),
-            azimuths,
-            order: factor * order,
         })
-    }
-
-    /// From where on the points resolve what the panels do to `tolerance`, for densities that the surface's own nodes and modes resolve.
-    pub fn separation(
-        &self,
-        discretization: &Discretization,
-        n_max: usize,
-        tolerance: f64,
-    ) -> Separation {
-        Separation::of_resolved(
-            discretization,
-            n_max,
-            [self.order, self.azimuths],
-            tolerance,
-        )
     }
 
     /// A scaled field on the surface's own nodes at the many points, times their shares of the surface.
@@ -138,9 +133,9 @@ mod tests {
         };
         let flow = Flow::new(&discretization, Layers::weighted(&density, weights));
         let field = density.scaled_by_roots(&discretization);
-        for (factor, distance) in FACTORS.into_iter().zip([0.35, 0.2]) {
-            let upsampling = Upsampling::new(&discretization, n_max, factor).unwrap();
-            let separation = upsampling.separation(&discretization, n_max, 1e-9);
+        for (level, distance) in [0.35, 0.2].into_iter().enumerate() {
+            let upsampling = Upsampling::new(&discretization, n_max, level).unwrap();
+            let separation = separation(&discretization, n_max, level, 1e-9);
             let mut strengths = upsampling.grid.vectors();
             let mut room = Default::default();
             upsampling.to_points(&field, &mut room, &mut strengths);

@@ -115,9 +115,9 @@ fn surfaces(setting: &Setting<'_>, answer: &Answer) -> Vec<SolvedBody> {
         .zip(&answer.flow.bodies);
     let surface = bodies.map(|((placed, found), layers)| {
         let discretization = &layers.discretization;
-        let motion = placed.frame.motion_to_body(found.motion).on(discretization);
+        let motion = layers.frame.motion_to_body(found.motion).on(discretization);
         SolvedBody {
-            frame: placed.frame,
+            frame: layers.frame,
             velocity: match slip(placed, layers) {
                 Some(slip) => motion.plus(1.0, &slip),
                 None => motion,

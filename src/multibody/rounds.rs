@@ -1,0 +1,342 @@
+//! Solutions, each finer than the one before, until the estimated error is small enough.
+
+use std::f64::consts::PI;
+use std::time::Instant;
+
+use super::SuspensionError;
+use super::assembly::{Assembly, Questions};
+use super::check::Miss;
+use super::class::{Classes, Kind};
+use super::contact::Gap;
+use super::memory::{gibibytes, needed_memory};
+use super::resolution::{first, refined};
+use super::solution::{Care, Iteration, Solution};
+use super::spheres::facing_neighbours;
+use super::sums::Operators;
+use super::suspension::{Motion, Suspension};
+use crate::krylov::Stop;
+use crate::progress::Progress;
+
+/// Residuals and products are better than the tolerance by these factors.
+const RESIDUAL: f64 = 0.1;
+const PRODUCT: f64 = 0.04;
+/// How far the estimate stays above what the boundary velocity is off by.
+const SAFETY: f64 = 2.0;
+/// What is left to rounding.
+const ROUNDING: f64 = 1e-14;
+/// Forces below this part of what the largest speed would make them count as if they were that large.
+const SMALL: f64 = 1e-2;
+/// Solutions, each finer than the one before, and how many in a row may gain less than a factor of two.
+const ROUNDS: usize = 10;
+const PATIENCE: usize = 2;
+/// What finer resolutions aim at, in tolerances: next time the estimate is to be below it, and not about it.
+const AIM: f64 = 0.4;
+/// Estimates that miss the tolerance by less may do so for other reasons than the resolution.
+const NEARLY: f64 = 10.0;
+/// Misses up to so many times what the iteration left may be its.
+const BLAMED: f64 = 2.0;
+/// Gaps of so many sizes of a body matter to its resolution.
+const REACH: f64 = 1.0;
+/// The largest tolerance to choose resolutions for.
+const COARSEST: f64 = 1e-2;
+/// An iteration that stagnates or is cut short at so many times its residual is still worth an answer: the estimate tells how much.
+const STALLED: f64 = 100.0;
+/// Least relative residual and product.
+const LEAST: f64 = 1e-13;
+
+/// Where to begin.
+pub(crate) struct Start {
+    kinds: Vec<Kind>,
+    operators: Operators,
+    /// Made already, for these kinds.
+    assembly: Option<Assembly>,
+}
+
+/// Where it ended.
+pub(crate) struct Converged {
+    pub best: Round,
+    pub work: Work,
+    operators: Operators,
+    /// Of the last solution, if that is the best.
+    assembly: Option<Assembly>,
+}
+
+impl Converged {
+    /// To go on with the next question about the same bodies.
+    pub fn into_start(self) -> Start {
+        let solution = &self.best.solution;
+        let kinds = (0..solution.layers.len()).map(|body| solution.classes.of(body).kind.clone());
+        Start {
+            kinds: kinds.collect(),
+            operators: self.operators,
+            assembly: self.assembly,
+        }
+    }
+}
+
+/// A solution with what is known of its error.
+#[derive(Clone, Debug)]
+pub(crate) struct Round {
+    pub solution: Solution,
+    pub misses: Vec<Miss>,
+    pub error_estimate: f64,
+    pub speed: f64,
+    /// What it took to estimate the error.
+    pub seconds: f64,
+}
+
+/// Iterations and products made.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Work {
+    pub iterations: usize,
+    pub products: usize,
+}
+
+impl Work {
+    /// With those of one more iteration.
+    pub fn and(self, iteration: &Iteration) -> Self {
+        Self {
+            iterations: self.iterations + iteration.iterations,
+            products: self.products + iteration.products,
+        }
+    }
+}
+
+impl Suspension<'_> {
+    /// The same question, and how the bodies lie: those that look alike from all sides look where they are resolved with the least.
+    pub(crate) fn arranged(
+        &self,
+        progress: &dyn Progress,
+    ) -> Result<(Self, Vec<Gap>), SuspensionError> {
+        let gaps = self.gaps(REACH, progress)?;
+        let arranged = Self {
+            bodies: facing_neighbours(&self.bodies, &gaps),
+            ..self.clone()
+        };
+        Ok((arranged, gaps))
+    }
+
+    /// The first resolutions for a tolerance.
+    pub(crate) fn start(
+        &self,
+        gaps: &[Gap],
+        tolerance: f64,
+        questions: Questions,
+    ) -> Result<Start, SuspensionError> {
+        // Where memory does not do for the tolerance, the best that it does for: the estimate will tell.
+        let mut looser = tolerance;
+        loop {
+            let kinds = self.kinds(&first(self, gaps, looser)?)?;
+            match self.check_memory(
+                &kinds,
+                questions,
+                "the coarsest resolutions that make sense",
+            ) {
+                Ok(()) => {
+                    return Ok(Start {
+                        kinds,
+                        operators: Operators::default(),
+                        assembly: None,
+                    });
+                }
+                Err(error) if looser > COARSEST => return Err(error),
+                Err(_) => looser *= 10.0,
+            }
+        }
+    }
+
+    /// Finer and finer solutions until the estimated error is below the tolerance or no longer falls.
+    pub(crate) fn converge(
+        &self,
+        start: Start,
+        tolerance: f64,
+        questions: Questions,
+        progress: &dyn Progress,
+    ) -> Result<Converged, SuspensionError> {
+        let Start {
+            mut kinds,
+            operators,
+            assembly,
+        } = start;
+        let assemble = |kinds: &[Kind], tolerance: f64, known: &Classes| {
+            self.assemble(kinds, tolerance, questions, known, &operators, progress)
+        };
+        let mut assembly = match assembly {
+            Some(assembly) => assembly,
+            None => assemble(&kinds, tolerance, &Classes::default())?,
+        };
+        let mut latest = self.round(&mut assembly, None, progress)?;
+        let mut work = Work::default().and(&latest.solution.iteration);
+        let mut best = latest.clone();
+        let mut best_is_latest = true;
+        let mut without_gain = 0;
+        let mut care = tolerance;
+        for _ in 1..ROUNDS {
+            if best.error_estimate <= tolerance || without_gain > PATIENCE {
+                break;
+            }
+            let worst = latest.misses.iter().map(|miss| miss.largest);
+            let allowed = AIM * worst.fold(0.0, f64::max) * tolerance / latest.error_estimate;
+            let left = &latest.solution.left;
+            // What the iteration left is no matter of panels and modes.
+            let finer = refined(&kinds, &latest.misses, |body| {
+                allowed.max(BLAMED * left[body])
+            });
+            if needed_memory(&finer, questions, &self.options) > self.memory() {
+                break;
+            }
+            kinds = finer;
+            // What is left near the end may be of sums, too.
+            let missed = latest.error_estimate / tolerance;
+            if missed < NEARLY {
+                care = care.min(0.5 * tolerance / missed);
+            }
+            let most_left = left.iter().copied().fold(0.0, f64::max);
+            if BLAMED * most_left > allowed {
+                care *= allowed / (BLAMED * most_left);
+            }
+            let known = latest.solution.classes.clone();
+            // Let go of the old one first: two would take twice the memory.
+            drop(assembly);
+            assembly = assemble(&kinds, care, &known)?;
+            let next = self.round(&mut assembly, Some(&latest.solution), progress)?;
+            work = work.and(&next.solution.iteration);
+            let gain = next.error_estimate < 0.5 * best.error_estimate;
+            without_gain = if gain { 0 } else { without_gain + 1 };
+            best_is_latest = next.error_estimate < best.error_estimate;
+            if best_is_latest {
+                best = next.clone();
+            }
+            latest = next;
+        }
+        Ok(Converged {
+            best,
+            work,
+            assembly: best_is_latest.then_some(assembly),
+            operators,
+        })
+    }
+
+    pub(crate) fn assemble(
+        &self,
+        kinds: &[Kind],
+        tolerance: f64,
+        questions: Questions,
+        known: &Classes,
+        operators: &Operators,
+        progress: &dyn Progress,
+    ) -> Result<Assembly, SuspensionError> {
+        let needed = needed_memory(kinds, questions, &self.options);
+        let care = self.care(tolerance, self.memory().saturating_sub(needed));
+        let operators = operators.clone();
+        Assembly::new(self, kinds, care, questions, known, operators, progress)
+    }
+
+    fn care(&self, tolerance: f64, memory: usize) -> Care {
+        let residual = self.options.residual.unwrap_or(RESIDUAL * tolerance);
+        Care {
+            residual: residual.max(LEAST),
+            product: (PRODUCT * tolerance).min(0.4 * residual).max(LEAST),
+            memory,
+        }
+    }
+
+    pub(crate) fn check_memory(
+        &self,
+        kinds: &[Kind],
+        questions: Questions,
+        what: &'static str,
+    ) -> Result<(), SuspensionError> {
+        let (needed, budget) = (
+            needed_memory(kinds, questions, &self.options),
+            self.memory(),
+        );
+        if needed <= budget {
+            return Ok(());
+        }
+        Err(SuspensionError::Memory {
+            what,
+            needed: gibibytes(needed),
+            budget: gibibytes(budget),
+        })
+    }
+
+    /// One solution, and by how much it is off.
+    pub(crate) fn round(
+        &self,
+        assembly: &mut Assembly,
+        before: Option<&Solution>,
+        progress: &dyn Progress,
+    ) -> Result<Round, SuspensionError> {
+        let solution = assembly.solve(self, before, progress)?;
+        let Iteration {
+            iterations,
+            residual,
+            stop,
+            ..
+        } = solution.iteration;
+        let wanted = assembly.care().residual;
+        if stop != Stop::Converged && (stop == Stop::Breakdown || residual > STALLED * wanted) {
+            return Err(SuspensionError::NotConverged {
+                iterations,
+                residual,
+                wanted,
+                stop,
+            });
+        }
+        let start = Instant::now();
+        let misses = assembly.misses(self, &solution, progress)?;
+        let speed = self.largest_speed(&solution);
+        let error_estimate = self.error_estimate(&solution, &misses, speed);
+        Ok(Round {
+            solution,
+            misses,
+            error_estimate,
+            speed,
+            seconds: start.elapsed().as_secs_f64(),
+        })
+    }
+
+    /// Of what is imposed, and of free bodies.
+    fn largest_speed(&self, solution: &Solution) -> f64 {
+        let speeds = self.bodies.iter().enumerate().map(|(i, body)| {
+            let motion = &solution.motions[i];
+            let size = solution.classes.of(i).tables.discretization.size();
+            match body.motion {
+                Motion::Given(_) => 0.0,
+                Motion::Free(_) => {
+                    (motion.velocity.norm()).max(size * motion.angular_velocity.norm())
+                }
+            }
+        });
+        speeds.fold(solution.largest_imposed, f64::max)
+    }
+
+    fn error_estimate(&self, solution: &Solution, misses: &[Miss], speed: f64) -> f64 {
+        let worst = misses.iter().fold(0.0f64, |most, miss| {
+            if miss.largest.is_nan() {
+                f64::INFINITY
+            } else {
+                most.max(miss.largest)
+            }
+        });
+        if worst == 0.0 {
+            return 0.0;
+        }
+        let velocities = worst / speed;
+        // A boundary velocity takes 6 pi size times itself to hold back, more or less; free bodies are known to have no such force.
+        let mut force = 0.0f64;
+        let mut scale = 0.0f64;
+        for (i, body) in self.bodies.iter().enumerate() {
+            if let Motion::Given(_) = body.motion {
+                let size = body.frame.scale() * solution.classes.of(i).tables.discretization.size();
+                let wrench = body.frame.wrench_to_lab(solution.wrenches[i]);
+                let found = wrench.force.norm().max(wrench.torque.norm() / size);
+                force = force.max(6.0 * PI * size * misses[i].largest);
+                scale = scale.max(found).max(SMALL * 6.0 * PI * size * speed);
+            }
+        }
+        let forces = if force == 0.0 { 0.0 } else { force / scale };
+        SAFETY * velocities.max(forces) + ROUNDING
+    }
+}

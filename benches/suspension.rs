@@ -4,7 +4,7 @@
 //!     cargo bench --bench suspension -- chosen BODIES TOLERANCE  its test with points chosen for a tolerance
 //!     cargo bench --bench suspension -- iterations [bodies on a side ...]
 //!     cargo bench --bench suspension -- product [BODIES] [TOLERANCE]   products at one tolerance beside their sums over points
-//!     cargo bench --bench suspension -- solve BODIES TOLERANCE   one suspension of free bodies, time and memory
+//!     cargo bench --bench suspension -- solve BODIES TOLERANCE [PANELS ORDER MODES]   one suspension of free bodies, time and memory; 0 panels: the solver chooses
 //!
 //! Spheroids on a cubic grid of spacing 2.4, axes at random; the thesis's have 5 panels of 10 nodes and 25 modes, 2550 points each.
 
@@ -19,6 +19,8 @@ use axistokes::{
 };
 
 const SPACING: f64 = 2.4;
+/// Panels, nodes on each, and modes: 2550 points.
+const THESIS_POINTS: [usize; 3] = [5, 10, 25];
 /// Most bodies for which the preconditioner without its second level is tried: it takes many iterations.
 const ONE_LEVEL: usize = 100;
 
@@ -70,7 +72,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         Some("chosen") => chosen(number(1, 64.0) as usize, number(2, 1e-9)),
         Some("product") => product(number(1, 64.0) as usize, number(2, 1e-6)),
-        Some("solve") => solve(number(1, 125.0) as usize, number(2, 1e-6)),
+        Some("solve") => {
+            let [panels, order, modes] =
+                [0, 1, 2].map(|k| number(3 + k, THESIS_POINTS[k] as f64) as usize);
+            solve(
+                number(1, 125.0) as usize,
+                number(2, 1e-6),
+                [panels, order, modes],
+            )
+        }
         _ => {
             println!("nothing asked for: table, iterations or solve");
             Ok(())
@@ -99,11 +109,14 @@ fn frames(count: usize, chance: &mut fastrand::Rng) -> Vec<Frame> {
     (0..count).map(|i| frame(i, chance)).collect()
 }
 
-fn by_hand(curve: &Shared) -> Result<Arc<Resolution>, Box<dyn Error>> {
+fn by_hand(
+    curve: &Shared,
+    [panels, order, modes]: [usize; 3],
+) -> Result<Arc<Resolution>, Box<dyn Error>> {
     Ok(Arc::new(Resolution {
-        panels: Panels::equal_arcs(&**curve, 5)?,
-        order: 10,
-        modes: 25,
+        panels: Panels::equal_arcs(&**curve, panels)?,
+        order,
+        modes,
     }))
 }
 
@@ -198,7 +211,7 @@ fn known_flow(count: usize, tolerance: Option<f64>) -> Result<(Answer, f64), Str
             [other, 1.0]
         };
         let curve: Shared = Arc::new(Spheroid::new(axes[0], axes[1]).map_err(|e| e.to_string())?);
-        resolutions.push(by_hand(&curve).map_err(|e| e.to_string())?);
+        resolutions.push(by_hand(&curve, THESIS_POINTS).map_err(|e| e.to_string())?);
         bodies.push(Body {
             slip: Some(&**slip),
             ..Body::new(curve, *frame)
@@ -233,13 +246,17 @@ fn known_flow(count: usize, tolerance: Option<f64>) -> Result<(Answer, f64), Str
 }
 
 /// Rods and discs in turn; free under random forces and torques, or held and moved at random.
-fn rods_and_discs<'a>(count: usize, free: bool) -> Result<Question<'a>, Box<dyn Error>> {
+fn rods_and_discs<'a>(
+    count: usize,
+    free: bool,
+    points: [usize; 3],
+) -> Result<Question<'a>, Box<dyn Error>> {
     let mut chance = fastrand::Rng::with_seed(1);
     let shapes: [Shared; 2] = [
         Arc::new(Spheroid::new(1.0, 0.5)?),
         Arc::new(Spheroid::new(0.5, 1.0)?),
     ];
-    let by_hand = [by_hand(&shapes[0])?, by_hand(&shapes[1])?];
+    let by_hand = [by_hand(&shapes[0], points)?, by_hand(&shapes[1], points)?];
     let frames = frames(count, &mut chance);
     let which = |frame: &Frame| (frame.center().coords.sum() / SPACING).round() as usize % 2;
     let bodies = frames.iter().map(|frame| {
@@ -276,7 +293,7 @@ fn iterations(sides: &[usize]) -> Result<(), Box<dyn Error>> {
             if !(free || two_level) && count > ONE_LEVEL {
                 break;
             }
-            let (bodies, resolutions) = rods_and_discs(count, free)?;
+            let (bodies, resolutions) = rods_and_discs(count, free, THESIS_POINTS)?;
             let mut suspension = Suspension::new(bodies);
             suspension.options.two_level = two_level;
             suspension.options.residual = Some(1e-8);
@@ -296,7 +313,7 @@ fn iterations(sides: &[usize]) -> Result<(), Box<dyn Error>> {
 /// An iteration whose products are all made to one tolerance: all that it takes over its sums alone, plans included in both.
 fn product(count: usize, tolerance: f64) -> Result<(), Box<dyn Error>> {
     for free in [true, false] {
-        let (bodies, resolutions) = rods_and_discs(count, free)?;
+        let (bodies, resolutions) = rods_and_discs(count, free, THESIS_POINTS)?;
         let mut suspension = Suspension::new(bodies);
         suspension.options.loosest_product = 0.0;
         suspension.options.residual = Some(25.0 * tolerance);
@@ -315,11 +332,20 @@ fn product(count: usize, tolerance: f64) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn solve(count: usize, tolerance: f64) -> Result<(), Box<dyn Error>> {
-    let (bodies, resolutions) = rods_and_discs(count, true)?;
+fn solve(count: usize, tolerance: f64, points: [usize; 3]) -> Result<(), Box<dyn Error>> {
+    let by_hand = if points[0] == 0 {
+        THESIS_POINTS
+    } else {
+        points
+    };
+    let (bodies, resolutions) = rods_and_discs(count, true, by_hand)?;
     let suspension = Suspension::new(bodies);
     let start = std::time::Instant::now();
-    let answer = suspension.at_resolutions(&resolutions, tolerance, &Silent)?;
+    let answer = if points[0] == 0 {
+        suspension.to_tolerance(tolerance, &Silent)?
+    } else {
+        suspension.at_resolutions(&resolutions, tolerance, &Silent)?
+    };
     let seconds = start.elapsed().as_secs_f64();
     let peak = peak_memory().unwrap_or(f64::NAN);
     let Answer {
@@ -340,9 +366,10 @@ fn solve(count: usize, tolerance: f64) -> Result<(), Box<dyn Error>> {
         answer.largest_speed
     );
     println!(
-        "{:.0} unknowns per second and iteration; {timings:?}; near points and bytes {:?}",
+        "{:.0} unknowns per second and iteration; {timings:?}; near points and bytes {:?}; {} classes",
         answer.unknowns as f64 * iteration.products as f64 / timings.iterate,
-        answer.near
+        answer.near,
+        answer.classes
     );
     Ok(())
 }

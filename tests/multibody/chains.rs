@@ -59,4 +59,5 @@ fn of_three_and_five_spheres() {
         assert!(error <= answer.error_estimate);
     }
     println!("worst {worst:.1e}");
+    assert!(worst <= 5e-10);
 }

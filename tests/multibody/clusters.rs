@@ -6,8 +6,8 @@ use nalgebra::{DMatrix, Point3, Rotation3, Unit};
 
 use super::common::{Curve, apart, asymmetry, direction, random, spheroid};
 
-/// Bodies of three shapes and different scales, more than 0.2 apart.
-fn cluster(seed: u64) -> Suspension<'static> {
+/// Three to five bodies of three shapes and different scales, at least `least` apart.
+fn cluster(seed: u64, least: f64) -> Suspension<'static> {
     let mut rng = fastrand::Rng::with_seed(seed);
     let curves: [Curve; 3] = [spheroid(1.0, 1.0), spheroid(1.0, 0.5), spheroid(0.6, 1.0)];
     let count = if seed < 2 { 3 } else { rng.usize(3..=5) };
@@ -20,13 +20,13 @@ fn cluster(seed: u64) -> Suspension<'static> {
             .map(|body| Placed {
                 curve: &*body.curve,
                 frame: body.frame,
-                reach: 0.2,
+                reach: least,
             })
             .collect();
         if !gaps(&placed)
             .expect("gaps")
             .iter()
-            .all(|gap| gap.distance > 0.2)
+            .all(|gap| gap.distance > least)
         {
             bodies.pop();
         }
@@ -35,41 +35,41 @@ fn cluster(seed: u64) -> Suspension<'static> {
 }
 
 /// The figures of one cluster.
-fn check(seed: u64, tolerance: f64) {
-    let cluster = cluster(seed);
+fn check(seed: u64, least: f64, tolerance: f64) {
+    let cluster = cluster(seed, least);
     let begin = std::time::Instant::now();
     let found = cluster
         .grand_mobility(tolerance, &Silent)
         .expect("a matrix");
     let asymmetry = asymmetry(&found.matrix);
-    let least = (0.5 * (&found.matrix + found.matrix.transpose()))
+    let smallest = (0.5 * (&found.matrix + found.matrix.transpose()))
         .symmetric_eigenvalues()
         .min();
     println!(
-        "cluster {seed}, {} bodies: asymmetry {asymmetry:.1e}, estimate {:.1e}, least eigenvalue {least:.2e} of {:.2e}, {:.1} s",
+        "cluster {seed}, {} bodies: asymmetry {asymmetry:.1e}, estimate {:.1e}, least eigenvalue {smallest:.2e} of {:.2e}, {:.1} s",
         cluster.bodies.len(),
         found.error_estimate,
         found.matrix.amax(),
         begin.elapsed().as_secs_f64()
     );
-    assert!(found.error_estimate <= tolerance && asymmetry <= 1e-5 && least > 0.0);
+    assert!(found.error_estimate <= tolerance && asymmetry <= 0.1 * tolerance && smallest > 0.0);
 }
 
 #[test]
 fn have_symmetric_positive_mobilities() {
-    check(1, 1e-4);
+    check(1, 0.5, 1e-9);
 }
 
 #[test]
 #[ignore = "minutes"]
 fn all_have_symmetric_positive_mobilities() {
-    (0..20).for_each(|seed| check(seed, 1e-4));
+    (0..20).for_each(|seed| check(seed, 0.5, 1e-9));
 }
 
 #[test]
 fn look_the_same_from_any_side() {
     let mut rng = fastrand::Rng::with_seed(7);
-    let mut cluster = cluster(0);
+    let mut cluster = cluster(0, 0.2);
     cluster.bodies.truncate(2);
     let rotation = Rotation3::from_axis_angle(&direction(&mut rng), 2.0);
     let shift = 10.0 * random(&mut rng);

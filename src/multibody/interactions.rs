@@ -171,7 +171,7 @@ impl Interactions {
         self.own.resize(self.fields.len(), 0.0);
         if !few {
             self.own.copy_from_slice(densities);
-            self.to_point_sums();
+            self.sum_own_points();
         }
         let members = &self.members;
         let (fields, near) = (&self.fields, &self.near);
@@ -208,7 +208,7 @@ impl Interactions {
     }
 
     /// What the sum over all points did to each body's own, from the densities in `own`.
-    fn to_point_sums(&mut self) {
+    fn sum_own_points(&mut self) {
         let (members, fields) = (&self.members, &self.fields);
         if self.often == Use::Once {
             for (tables, batches) in self.batches.by_tables() {

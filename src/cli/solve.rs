@@ -36,12 +36,19 @@ pub fn run(arguments: &Solve) -> Result<(), Failure> {
     }
 }
 
+/// Relative residuals below this part of the tolerance do as a rule.
+const ENOUGH: f64 = 0.1;
+
 /// By how much an error estimate misses the tolerance of the case, if it does.
 pub fn missed(case: &Case, estimate: f64) -> Option<String> {
     let tolerance = case.tolerance().filter(|&t| estimate > t)?;
     let factor = estimate / tolerance;
+    let residual = case.solver.tolerance.filter(|&r| r > ENOUGH * tolerance);
+    let why = residual.map_or(String::new(), |residual| {
+        format!("; solver.tolerance = {residual:e} may be why")
+    });
     Some(format!(
-        "the error estimate {estimate:.3e} misses the tolerance {tolerance:e} by a factor of {factor:.3}"
+        "the error estimate {estimate:.3e} misses the tolerance {tolerance:e} by a factor of {factor:.3}{why}"
     ))
 }
 
@@ -57,6 +64,12 @@ mod tests {
         let message = missed(&case, 4e-8).unwrap();
         assert!(
             message.ends_with("misses the tolerance 1e-8 by a factor of 4.000"),
+            "{message}"
+        );
+        let loose = format!("{text}\n[solver]\ntolerance = 1e-4");
+        let message = missed(&Case::parse(&loose, "ball.toml").unwrap(), 4e-8).unwrap();
+        assert!(
+            message.ends_with("; solver.tolerance = 1e-4 may be why"),
             "{message}"
         );
     }

@@ -135,6 +135,36 @@ fn solutions_are_those_of_a_direct_solver() {
     }
 }
 
+/// Cut short: the residual is then far from rounding.
+#[test]
+fn the_residual_that_is_left_is_that_of_the_solution() {
+    for method in METHODS {
+        let mut operator = Dense::second_kind(60, 1);
+        let b: Vec<f64> = some_vector(60, 2).iter().map(|x| 1e-30 * x).collect();
+        let start = some_vector(60, 3)
+            .iter()
+            .map(|x| 1e-30 * x)
+            .collect::<Vec<_>>();
+        for iterations in [0, 3, 9] {
+            let control = Control {
+                max_iterations: iterations,
+                ..Control::new(1e-12)
+            };
+            let outcome = run(&mut operator, &b, Some(&start), method, &control);
+            assert_eq!(outcome.stop, Stop::MaxIterations);
+            let mut left = vec![0.0; b.len()];
+            operator.times(&outcome.solution, &mut left);
+            left.iter_mut().zip(&b).for_each(|(y, b)| *y = b - *y);
+            let apart = left
+                .iter()
+                .zip(&outcome.residual_vector)
+                .map(|(a, b)| a - b);
+            assert!(norm(&apart.collect::<Vec<_>>()) < 1e-13 * norm(&b));
+            assert!(norm(&left) > 1e-8 * norm(&b));
+        }
+    }
+}
+
 #[test]
 fn gmres_has_the_least_residual_of_the_krylov_space() {
     let mut operator = Dense::second_kind(40, 3);

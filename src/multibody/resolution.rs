@@ -241,3 +241,48 @@ fn wanted(kind: &Kind, miss: &Miss, allowed: f64) -> (Vec<bool>, bool) {
     let marked = miss.panels.iter().map(|&p| p >= 0.5 * worst).collect();
     (marked, true)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::dirichlet::Formulation;
+    use crate::curve::Spheroid;
+    use crate::multibody::class::Role;
+
+    fn kind(panels: usize, modes: usize) -> Kind {
+        let curve: Arc<dyn GeneratingCurve> = Arc::new(Spheroid::new(1.0, 0.6).unwrap());
+        Kind {
+            resolution: Arc::new(Resolution {
+                panels: Panels::equal_arcs(&*curve, panels).unwrap(),
+                order: ORDER,
+                modes,
+            }),
+            curve,
+            role: Role::Held(Formulation::CombinedField),
+        }
+    }
+
+    /// What is refined of four panels and eight modes.
+    fn refined_of(panels: [f64; 4], beyond: f64, allowed: f64) -> (usize, usize) {
+        let mut modes = vec![1e-3; 9];
+        modes.extend([beyond; 3]);
+        let largest = panels.iter().fold(beyond, |most, &p| most.max(p));
+        let miss = Miss {
+            largest,
+            panels: panels.to_vec(),
+            modes,
+        };
+        let finer = &refined(&[kind(4, 8)], &[miss], |_| allowed)[0].resolution;
+        (finer.panels.len(), finer.modes)
+    }
+
+    #[test]
+    fn what_is_missing_is_refined() {
+        // A panel that stands out; modes that are missing, which all panels feel; both; nothing but a little of that; nothing.
+        assert_eq!(refined_of([1e-3, 1e-6, 1e-6, 1e-6], 1e-9, 1e-5), (5, 8));
+        assert_eq!(refined_of([3e-3, 2e-3, 3e-3, 1e-3], 1e-3, 1e-5), (4, 12));
+        assert_eq!(refined_of([3e-2, 2e-3, 3e-3, 1e-3], 1e-3, 1e-5), (5, 12));
+        assert_eq!(refined_of([2e-6; 4], 2e-6, 1.9e-6), (4, 12));
+        assert_eq!(refined_of([2e-6; 4], 2e-6, 2.1e-6), (4, 8));
+    }
+}

@@ -170,7 +170,8 @@ impl Suspension<'_> {
         let mut best = latest.clone();
         let mut best_is_latest = true;
         let mut without_gain = 0;
-        let mut care = tolerance;
+        // An assembly that served before may be better than it need be.
+        let mut care = assembly.care().tolerance;
         for _ in 1..ROUNDS {
             if best.error_estimate <= tolerance || without_gain > PATIENCE {
                 break;
@@ -235,6 +236,7 @@ impl Suspension<'_> {
     fn care(&self, tolerance: f64, memory: usize) -> Care {
         let residual = self.options.residual.unwrap_or(RESIDUAL * tolerance);
         Care {
+            tolerance,
             residual: residual.max(LEAST),
             product: (PRODUCT * tolerance).min(0.4 * residual).max(LEAST),
             memory,

@@ -23,6 +23,8 @@ const OVERSAMPLING: f64 = 1.5;
 /// How well and with what the equations are to be solved.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Care {
+    /// What all of it is for.
+    pub tolerance: f64,
     /// Relative residual of the iteration.
     pub residual: f64,
     /// Tolerance of the products at their best, and of what is near.
@@ -177,9 +179,9 @@ pub(crate) fn iterate(
     let scale = norm(data);
     let mut lacking = data.to_vec();
     let mut reduced = 1.0;
-    if let Some(first) = &first
-        && scale > 0.0
-    {
+    // Nothing imposed has nothing for an answer, whatever was there before.
+    let first = first.filter(|_| scale > 0.0);
+    if let Some(first) = &first {
         let mut product = vec![0.0; first.len()];
         system.apply_alone(first, &mut product, care.product)?;
         for (lacking, product) in lacking.iter_mut().zip(&product) {

@@ -290,6 +290,13 @@ fn explain(setting: &Setting<'_>, error: SuspensionError) -> SolveError {
             case.path.display(),
             name(body)
         )),
+        SuspensionError::NotConverged {
+            stop: krylov::Stop::MaxIterations,
+            ..
+        } => SolveError::Failed(format!(
+            "{}: {error} (solver.max_iterations)",
+            case.path.display()
+        )),
         SuspensionError::Interrupted => SolveError::Interrupted,
         other => SolveError::Failed(format!("{}: {other}", case.path.display())),
     }

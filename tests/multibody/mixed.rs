@@ -27,6 +27,22 @@ fn three() -> Vec<Body<'static>> {
     bodies
 }
 
+/// Residuals are small in the mean: in a gap, where panels are short, an iteration leaves more. More panels would not help.
+#[test]
+fn what_an_iteration_leaves_in_a_gap_is_iterated_away() {
+    let weight = pushed(-Vector3::z(), Vector3::zeros());
+    let bodies = [0.0, 2.01].map(|x| Body {
+        motion: weight,
+        ..Body::new(ball(), at(x, 0.0, 0.0))
+    });
+    let answer = answer(&Suspension::new(bodies.to_vec()), 1e-6);
+    assert!(answer.error_estimate <= 1e-6);
+    let resolution = &answer.bodies[0].resolution;
+    // Turned towards each other, the spheres have one axis.
+    assert_eq!(resolution.modes, 1);
+    assert!(resolution.panels.len() <= 7, "{}", resolution.panels.len());
+}
+
 #[test]
 fn motions_that_were_found_give_back_the_forces() {
     let mut rng = fastrand::Rng::with_seed(12);

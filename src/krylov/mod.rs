@@ -47,6 +47,8 @@ mod session;
 mod tests;
 mod vectors;
 
+use std::fmt;
+
 use thiserror::Error;
 
 use session::Session;
@@ -139,6 +141,17 @@ pub enum Stop {
     Stagnated,
     /// A coefficient of BiCGStab's recurrences is a quotient of zeros, also after a new start.
     Breakdown,
+}
+
+impl fmt::Display for Stop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Converged => "it converged",
+            Self::MaxIterations => "no more were allowed",
+            Self::Stagnated => "it no longer fell",
+            Self::Breakdown => "the method broke down",
+        })
+    }
 }
 
 /// What the iteration came to. Whoever needs a solution must look at [`Outcome::stop`].

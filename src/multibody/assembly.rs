@@ -37,6 +37,8 @@ pub(crate) struct Assembly {
     /// The single layers of free bodies on the same points, if any were wanted.
     singles: Option<Interactions>,
     checker: Checker,
+    /// The equations on the surfaces of the check, if they were wanted and will be again.
+    finer: Option<Box<Assembly>>,
     questions: Questions,
     care: Care,
     operators: Operators,
@@ -86,10 +88,37 @@ impl Assembly {
             system,
             singles: None,
             checker,
+            finer: None,
             questions,
             care,
             operators,
         })
+    }
+
+    /// The bodies on the surfaces of the check.
+    pub fn finer_kinds(&self) -> Vec<Kind> {
+        let finer: Vec<Kind> = self.checker.kinds().collect();
+        let bodies = 0..self.system.interactions.members().len();
+        bodies
+            .map(|body| finer[self.classes.index_of(body)].clone())
+            .collect()
+    }
+
+    /// The equations for them, if they were made before.
+    pub fn take_finer(&mut self) -> Option<Self> {
+        self.finer.take().map(|finer| *finer)
+    }
+
+    /// Keeps the equations for them for the next question, if there may be one.
+    pub fn keep_finer(&mut self, finer: Self) {
+        if self.questions == Questions::Many {
+            self.finer = Some(Box::new(finer));
+        }
+    }
+
+    /// Operators of sums, which serve all tolerances and places.
+    pub fn operators(&self) -> &Operators {
+        &self.operators
     }
 
     /// How well the equations are solved.

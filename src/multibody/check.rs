@@ -9,7 +9,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::SuspensionError;
-use super::class::{Class, Classes};
+use super::class::{Class, Classes, Kind};
 use super::interactions::{Interactions, Use};
 use super::resolution::are_coaxial;
 use super::solution::{Imposed, Solution};
@@ -19,7 +19,7 @@ use super::tables::{Member, Tables};
 use crate::body::discretization::Discretization;
 use crate::body::layers::{LayerWeights, Layers};
 use crate::body::matrix::{LayerPotential, ModalMatrices};
-use crate::body::problem::checking_modes;
+use crate::body::problem::{Resolution, checking_modes};
 use crate::body::refinement::EXTRA_ORDER;
 use crate::body::surface::SurfaceModes;
 use crate::kernel::{CombinedField, DoubleLayer};
@@ -114,6 +114,18 @@ impl Checker {
                 interactions: [const { None }; PARTS.len()],
                 memory: memory / PARTS.len(),
             }),
+        })
+    }
+
+    /// The classes on their finer surfaces.
+    pub fn kinds(&self) -> impl Iterator<Item = Kind> {
+        self.finer.iter().map(|finer| Kind {
+            resolution: Arc::new(Resolution {
+                panels: finer.discretization.panels().clone(),
+                order: finer.discretization.order(),
+                modes: finer.n_max,
+            }),
+            ..finer.class.kind.clone()
         })
     }
 

@@ -58,7 +58,7 @@ pub enum SuspensionError {
     Contact(#[from] ContactError),
     /// The iteration did not converge.
     #[error(
-        "the iteration ended after {iterations} iterations at a relative residual of {residual:.1e}: expected {wanted:.1e} ({stop:?})"
+        "the iteration ended after {iterations} iterations at a relative residual of {residual:.1e}: expected {wanted:.1e}; {stop}"
     )]
     NotConverged {
         /// Iterations made.

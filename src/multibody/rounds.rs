@@ -13,7 +13,7 @@ use super::resolution::{first, refined};
 use super::solution::{Care, Iteration, Solution};
 use super::spheres::facing_neighbours;
 use super::sums::Operators;
-use super::suspension::{Motion, Suspension};
+use super::suspension::{Motion, Options, Suspension};
 use crate::krylov::Stop;
 use crate::progress::Progress;
 
@@ -21,7 +21,7 @@ use crate::progress::Progress;
 const RESIDUAL: f64 = 0.1;
 const PRODUCT: f64 = 0.04;
 /// How far the estimate stays above what the boundary velocity is off by.
-const SAFETY: f64 = 2.0;
+pub(crate) const SAFETY: f64 = 2.0;
 /// What is left to rounding.
 const ROUNDING: f64 = 1e-14;
 /// Forces below this part of what the largest speed would make them count as if they were that large.
@@ -35,8 +35,12 @@ const AIM: f64 = 0.4;
 const NEARLY: f64 = 10.0;
 /// Misses up to so many times what the iteration left may be its.
 const BLAMED: f64 = 2.0;
+/// Gaps below so many sizes of the smaller body are narrow.
+const NARROW: f64 = 0.2;
+/// How much better the equations on finer surfaces are solved than those whose error they tell.
+const FINER: f64 = 0.1;
 /// Gaps of so many sizes of a body matter to its resolution.
-const REACH: f64 = 1.0;
+pub(crate) const REACH: f64 = 1.0;
 /// The largest tolerance to choose resolutions for.
 const COARSEST: f64 = 1e-2;
 /// An iteration that stagnates or is cut short at so many times its residual is still worth an answer: the estimate tells how much.
@@ -47,6 +51,8 @@ const LEAST: f64 = 1e-13;
 /// Where to begin.
 pub(crate) struct Start {
     kinds: Vec<Kind>,
+    /// Whether a gap between bodies is narrow.
+    narrow: bool,
     operators: Operators,
     /// Made already, for these kinds.
     assembly: Option<Assembly>,
@@ -56,6 +62,7 @@ pub(crate) struct Start {
 pub(crate) struct Converged {
     pub best: Round,
     pub work: Work,
+    narrow: bool,
     operators: Operators,
     /// Of the last solution, if that is the best.
     assembly: Option<Assembly>,
@@ -68,6 +75,7 @@ impl Converged {
         let kinds = (0..solution.layers.len()).map(|body| solution.classes.of(body).kind.clone());
         Start {
             kinds: kinds.collect(),
+            narrow: self.narrow,
             operators: self.operators,
             assembly: self.assembly,
         }
@@ -78,6 +86,8 @@ impl Converged {
 #[derive(Clone, Debug)]
 pub(crate) struct Round {
     pub solution: Solution,
+    /// On finer surfaces, if that was needed to tell the error.
+    pub finer: Option<Solution>,
     pub misses: Vec<Miss>,
     pub error_estimate: f64,
     pub speed: f64,
@@ -93,12 +103,13 @@ pub(crate) struct Work {
 }
 
 impl Work {
-    /// With those of one more iteration.
-    pub fn and(self, iteration: &Iteration) -> Self {
-        Self {
-            iterations: self.iterations + iteration.iterations,
-            products: self.products + iteration.products,
-        }
+    /// With those of one more round.
+    pub fn and(self, round: &Round) -> Self {
+        let solutions = [Some(&round.solution), round.finer.as_ref()];
+        (solutions.into_iter().flatten()).fold(self, |work, solution| Self {
+            iterations: work.iterations + solution.iteration.iterations,
+            products: work.products + solution.iteration.products,
+        })
     }
 }
 
@@ -135,6 +146,7 @@ impl Suspension<'_> {
                 Ok(()) => {
                     return Ok(Start {
                         kinds,
+                        narrow: self.is_narrow(gaps),
                         operators: Operators::default(),
                         assembly: None,
                     });
@@ -155,6 +167,7 @@ impl Suspension<'_> {
     ) -> Result<Converged, SuspensionError> {
         let Start {
             mut kinds,
+            narrow,
             operators,
             assembly,
         } = start;
@@ -165,8 +178,10 @@ impl Suspension<'_> {
             Some(assembly) => assembly,
             None => assemble(&kinds, tolerance, &Classes::default())?,
         };
-        let mut latest = self.round(&mut assembly, None, progress)?;
-        let mut work = Work::default().and(&latest.solution.iteration);
+        // What misses by far is refined anyway.
+        let look_at = if narrow { NEARLY * tolerance } else { 0.0 };
+        let mut latest = self.round(&mut assembly, None, look_at, progress)?;
+        let mut work = Work::default().and(&latest);
         let mut best = latest.clone();
         let mut best_is_latest = true;
         let mut without_gain = 0;
@@ -200,11 +215,22 @@ impl Suspension<'_> {
             // Let go of the old one first: two would take twice the memory.
             drop(assembly);
             assembly = assemble(&kinds, care, &known)?;
-            let next = self.round(&mut assembly, Some(&latest.solution), progress)?;
-            work = work.and(&next.solution.iteration);
-            let gain = next.error_estimate < 0.5 * best.error_estimate;
+            let next = match self.round(&mut assembly, Some(&latest.solution), look_at, progress) {
+                // What was found before is still an answer.
+                Err(SuspensionError::NotConverged { .. }) => {
+                    best_is_latest = false;
+                    break;
+                }
+                next => next?,
+            };
+            work = work.and(&next);
+            // An error that was looked at on finer surfaces is known better.
+            let known_better = next.finer.is_some() && best.finer.is_none();
+            let gain = known_better || next.error_estimate < 0.5 * best.error_estimate;
             without_gain = if gain { 0 } else { without_gain + 1 };
-            best_is_latest = next.error_estimate < best.error_estimate;
+            best_is_latest = known_better
+                || next.error_estimate < best.error_estimate
+                    && next.finer.is_some() == best.finer.is_some();
             if best_is_latest {
                 best = next.clone();
             }
@@ -213,6 +239,7 @@ impl Suspension<'_> {
         Ok(Converged {
             best,
             work,
+            narrow,
             assembly: best_is_latest.then_some(assembly),
             operators,
         })
@@ -263,11 +290,20 @@ impl Suspension<'_> {
         })
     }
 
-    /// One solution, and by how much it is off.
+    /// Whether a gap between bodies is narrow.
+    pub(crate) fn is_narrow(&self, gaps: &[Gap]) -> bool {
+        gaps.iter().any(|gap| {
+            let sizes = gap.bodies.map(|body| self.bodies[body].size());
+            gap.distance < NARROW * sizes[0].min(sizes[1])
+        })
+    }
+
+    /// One solution, and by how much it is off; if that seems to be no more than `look_at`, by what a solution on finer surfaces says, too.
     pub(crate) fn round(
         &self,
         assembly: &mut Assembly,
         before: Option<&Solution>,
+        look_at: f64,
         progress: &dyn Progress,
     ) -> Result<Round, SuspensionError> {
         let solution = assembly.solve(self, before, progress)?;
@@ -289,9 +325,18 @@ impl Suspension<'_> {
         let start = Instant::now();
         let misses = assembly.misses(self, &solution, progress)?;
         let speed = self.largest_speed(&solution);
-        let error_estimate = self.error_estimate(&solution, &misses, speed);
+        let mut error_estimate = self.error_estimate(&solution, &misses, speed);
+        let mut finer = None;
+        if error_estimate <= look_at {
+            finer = self.on_finer_surfaces(assembly, &solution, progress)?;
+            let apart = finer
+                .as_ref()
+                .map(|finer| self.apart(&solution, finer, speed));
+            error_estimate = error_estimate.max(SAFETY * apart.unwrap_or(0.0));
+        }
         Ok(Round {
             solution,
+            finer,
             misses,
             error_estimate,
             speed,
@@ -300,6 +345,80 @@ impl Suspension<'_> {
     }
 
     /// Of what is imposed, and of free bodies.
+    /// The solution on the surfaces of the check, if memory does for it.
+    ///
+    /// Where gaps are narrow, the tractions that go with small velocities are large: by how much forces are off no velocity tells.
+    fn on_finer_surfaces(
+        &self,
+        assembly: &mut Assembly,
+        solution: &Solution,
+        progress: &dyn Progress,
+    ) -> Result<Option<Solution>, SuspensionError> {
+        let kinds = assembly.finer_kinds();
+        let needed = needed_memory(&kinds, Questions::One, &self.options);
+        let budget = self.memory();
+        if 2 * needed > budget {
+            return Ok(None);
+        }
+        let mut finer = match assembly.take_finer() {
+            Some(finer) => finer,
+            None => {
+                let options = Options {
+                    residual: None,
+                    ..self.options
+                };
+                let care = Suspension {
+                    options,
+                    ..self.clone()
+                }
+                .care(FINER * assembly.care().tolerance, budget - 2 * needed);
+                let operators = assembly.operators().clone();
+                let known = Classes::default();
+                let questions = Questions::One;
+                Assembly::new(self, &kinds, care, questions, &known, operators, progress)?
+            }
+        };
+        let found = finer.solve(self, Some(solution), progress)?;
+        assembly.keep_finer(finer);
+        Ok(Some(found))
+    }
+
+    /// By how much the motions of two solutions differ, over the speed, and their forces, over the largest.
+    fn apart(&self, one: &Solution, other: &Solution, speed: f64) -> f64 {
+        let (mut motions, mut forces) = (0.0f64, 0.0f64);
+        for (i, body) in self.bodies.iter().enumerate() {
+            let size = one.classes.of(i).tables.discretization.size();
+            let [a, b] = [one, other].map(|solution| (solution.motions[i], solution.wrenches[i]));
+            let turning = (a.0.angular_velocity - b.0.angular_velocity).norm();
+            let moving = (a.0.velocity - b.0.velocity).norm();
+            motions = motions.max(moving).max(size * turning);
+            if let Motion::Given(_) = body.motion {
+                let force = (a.1.force - b.1.force).norm();
+                let torque = (a.1.torque - b.1.torque).norm();
+                forces = forces.max(body.frame.scale() * force.max(torque / size));
+            }
+        }
+        if motions == 0.0 && forces == 0.0 {
+            return 0.0;
+        }
+        let scale = self.force_scale(one, speed);
+        (motions / speed).max(if forces == 0.0 { 0.0 } else { forces / scale })
+    }
+
+    /// The largest force or torque over size on a held body, or a part of what the largest speed would make it.
+    fn force_scale(&self, solution: &Solution, speed: f64) -> f64 {
+        let mut scale = 0.0f64;
+        for (i, body) in self.bodies.iter().enumerate() {
+            if let Motion::Given(_) = body.motion {
+                let size = body.frame.scale() * solution.classes.of(i).tables.discretization.size();
+                let wrench = body.frame.wrench_to_lab(solution.wrenches[i]);
+                let found = wrench.force.norm().max(wrench.torque.norm() / size);
+                scale = scale.max(found).max(SMALL * 6.0 * PI * size * speed);
+            }
+        }
+        scale
+    }
+
     fn largest_speed(&self, solution: &Solution) -> f64 {
         let speeds = self.bodies.iter().enumerate().map(|(i, body)| {
             let motion = &solution.motions[i];
@@ -328,17 +447,17 @@ impl Suspension<'_> {
         let velocities = worst / speed;
         // A boundary velocity takes 6 pi size times itself to hold back, more or less; free bodies are known to have no such force.
         let mut force = 0.0f64;
-        let mut scale = 0.0f64;
         for (i, body) in self.bodies.iter().enumerate() {
             if let Motion::Given(_) = body.motion {
                 let size = body.frame.scale() * solution.classes.of(i).tables.discretization.size();
-                let wrench = body.frame.wrench_to_lab(solution.wrenches[i]);
-                let found = wrench.force.norm().max(wrench.torque.norm() / size);
                 force = force.max(6.0 * PI * size * misses[i].largest);
-                scale = scale.max(found).max(SMALL * 6.0 * PI * size * speed);
             }
         }
-        let forces = if force == 0.0 { 0.0 } else { force / scale };
+        let forces = if force == 0.0 {
+            0.0
+        } else {
+            force / self.force_scale(solution, speed)
+        };
         SAFETY * velocities.max(forces) + ROUNDING
     }
 }

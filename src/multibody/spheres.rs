@@ -4,6 +4,7 @@
 use nalgebra::{Unit, Vector3};
 
 use super::contact::Gap;
+use super::resolution::are_coaxial;
 use super::suspension::Body;
 use crate::body::frame::Frame;
 use crate::curve::GeneratingCurve;
@@ -16,6 +17,9 @@ const ON_LINE: f64 = 1e-6;
 /// The bodies with the axes of spheres towards the nearest neighbour; those with a slip stay, for it is given in their frame.
 pub(crate) fn facing_neighbours<'a>(bodies: &[Body<'a>], gaps: &[Gap]) -> Vec<Body<'a>> {
     let mut facing = bodies.to_vec();
+    if are_coaxial(bodies) {
+        return facing;
+    }
     for (index, body) in facing.iter_mut().enumerate() {
         if body.slip.is_some() || !is_sphere(&*body.curve) {
             continue;
@@ -64,7 +68,6 @@ mod tests {
 
     use super::*;
     use crate::curve::Spheroid;
-    use crate::multibody::resolution::are_coaxial;
     use crate::multibody::suspension::Suspension;
     use crate::progress::Silent;
 

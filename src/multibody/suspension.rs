@@ -37,11 +37,12 @@ use nalgebra::{Matrix3, Point3};
 
 use super::SuspensionError;
 use super::assembly::Questions;
+use super::check::Miss;
 use super::class::{Classes, Kind, Role};
 use super::contact::{Gap, Placed, gaps};
 use super::flow::{BodyLayers, SuspensionFlow};
-use super::rounds::{Converged, Round, Work};
-use super::solution::Iteration;
+use super::rounds::{Converged, REACH, Round, SAFETY, Work};
+use super::solution::{Iteration, Solution};
 use super::sums::Operators;
 use crate::body::dirichlet::Formulation;
 use crate::body::frame::Frame;
@@ -77,6 +78,11 @@ impl Body<'_> {
             motion: Motion::Given(RigidMotion::rest()),
             slip: None,
         }
+    }
+
+    /// The distance of its farthest point from its centre, or nearly.
+    pub(crate) fn size(&self) -> f64 {
+        extent(&*self.curve) * self.frame.scale()
     }
 }
 
@@ -141,6 +147,13 @@ pub struct BodyAnswer {
     pub resolution: Resolution,
 }
 
+/// The same answer on finer surfaces.
+#[derive(Clone, Debug)]
+pub(crate) struct Finer {
+    pub bodies: Vec<BodyAnswer>,
+    pub flow: SuspensionFlow,
+}
+
 /// The answer to a [`Suspension`].
 #[derive(Clone, Debug)]
 pub struct Answer {
@@ -150,8 +163,13 @@ pub struct Answer {
     pub targets: Vec<FlowAt>,
     /// The flow, to be evaluated anywhere.
     pub flow: SuspensionFlow,
-    /// Estimated error: of velocities anywhere in the fluid and of rigid velocities relative to [`largest_speed`](Self::largest_speed), and of forces and
-    /// torques relative to their largest or, where that vanishes, to a hundredth of $6\pi$ times size and largest speed.
+    /// On finer surfaces, if that was needed to tell the error.
+    pub(crate) finer: Option<Finer>,
+    /// Estimated error: of velocities at the targets and of rigid velocities relative to [`largest_speed`](Self::largest_speed), and of forces, and
+    /// torques over sizes, relative to the largest of them or, where that vanishes, to a hundredth of $6\pi$ times size and largest speed.
+    ///
+    /// It is twice the largest velocity by which the boundary condition is missed on finer surfaces. Where gaps are narrow small velocities go with
+    /// large tractions; then the equations are solved on those surfaces, too, and it is no less than twice the difference.
     pub error_estimate: f64,
     /// The largest speed on the surfaces, of what is imposed and of the free bodies' motions.
     pub largest_speed: f64,
@@ -227,7 +245,7 @@ impl<'a> Suspension<'a> {
             });
         }
         self.check_question(tolerance)?;
-        self.gaps(0.0, progress)?;
+        let gaps = self.gaps(REACH, progress)?;
         let kinds = self.kinds(resolutions)?;
         self.check_memory(&kinds, Questions::One, "panels, order and modes by hand")?;
         let (known, operators) = (Classes::default(), Operators::default());
@@ -239,9 +257,14 @@ impl<'a> Suspension<'a> {
             &operators,
             progress,
         )?;
-        let round = self.round(&mut assembly, None, progress)?;
+        let look_at = if self.is_narrow(&gaps) {
+            f64::INFINITY
+        } else {
+            0.0
+        };
+        let round = self.round(&mut assembly, None, look_at, progress)?;
         drop(assembly);
-        let work = Work::default().and(&round.solution.iteration);
+        let work = Work::default().and(&round);
         self.answer(round, tolerance, work, begin, progress)
     }
 
@@ -256,9 +279,6 @@ impl<'a> Suspension<'a> {
         progress: &dyn Progress,
     ) -> Result<Answer, SuspensionError> {
         let begin = Instant::now();
-        if self.bodies.is_empty() {
-            return Err(SuspensionError::Empty);
-        }
         self.check_question(tolerance)?;
         let (arranged, gaps) = self.arranged(progress)?;
         let start = arranged.start(&gaps, tolerance, Questions::One)?;
@@ -275,13 +295,10 @@ impl<'a> Suspension<'a> {
     ) -> Result<Vec<Gap>, SuspensionError> {
         progress.begin("gaps", 0);
         let placed: Vec<Placed<'_>> = (self.bodies.iter())
-            .map(|body| {
-                let extent = extent(&*body.curve);
-                Placed {
-                    curve: &*body.curve,
-                    frame: body.frame,
-                    reach: reach * extent * body.frame.scale(),
-                }
+            .map(|body| Placed {
+                curve: &*body.curve,
+                frame: body.frame,
+                reach: reach * body.size(),
             })
             .collect();
         let gaps = gaps(&placed)?;
@@ -304,6 +321,9 @@ impl<'a> Suspension<'a> {
 
     /// Refuses questions that make no sense.
     pub(crate) fn check_question(&self, tolerance: f64) -> Result<(), SuspensionError> {
+        if self.bodies.is_empty() {
+            return Err(SuspensionError::Empty);
+        }
         if !(SMALLEST_TOLERANCE..1.0).contains(&tolerance) {
             return Err(SuspensionError::Tolerance(tolerance));
         }
@@ -317,9 +337,6 @@ impl<'a> Suspension<'a> {
         &self,
         resolutions: &[Arc<Resolution>],
     ) -> Result<Vec<Kind>, SuspensionError> {
-        if self.bodies.is_empty() {
-            return Err(SuspensionError::Empty);
-        }
         let kinds = self.bodies.iter().zip(resolutions);
         Ok(kinds
             .map(|(body, resolution)| Kind {
@@ -344,50 +361,37 @@ impl<'a> Suspension<'a> {
         let Round {
             solution,
             misses,
-            error_estimate,
+            finer,
+            mut error_estimate,
             speed,
             seconds: estimate,
         } = round;
-        let bodies = self.bodies.iter().enumerate().map(|(i, body)| {
-            let class = solution.classes.of(i);
-            let frame = &body.frame;
-            let volume = frame.scale().powi(2);
-            let of_shape = stresslet(&class.tables.discretization, &solution.layers[i]);
-            BodyAnswer {
-                motion: match body.motion {
-                    Motion::Given(motion) => motion,
-                    Motion::Free(_) => frame.motion_to_lab(solution.motions[i]),
-                },
-                wrench: match body.motion {
-                    Motion::Given(_) => frame.wrench_to_lab(solution.wrenches[i]),
-                    Motion::Free(wrench) => wrench,
-                },
-                stresslet: volume * frame.tensor_to_lab(&of_shape),
-                boundary_error: misses[i].largest,
-                resolution: (*class.kind.resolution).clone(),
-            }
-        });
-        let flow = SuspensionFlow {
-            bodies: (self.bodies.iter().enumerate())
-                .map(|(i, body)| BodyLayers {
-                    frame: body.frame,
-                    discretization: solution.classes.of(i).tables.discretization.clone(),
-                    layers: solution.layers[i].clone(),
-                })
-                .collect(),
-            background: self.background,
-        };
+        let flow = self.flow_of(&solution);
         let start = Instant::now();
-        let targets = if self.targets.is_empty() {
-            Vec::new()
-        } else {
-            flow.evaluate(
-                self.targets,
-                evaluation_tolerance(Some(tolerance)),
-                progress,
-            )?
+        let evaluated = |flow: &SuspensionFlow| {
+            if self.targets.is_empty() {
+                return Ok(Vec::new());
+            }
+            let tolerance = evaluation_tolerance(Some(tolerance));
+            flow.evaluate(self.targets, tolerance, progress)
         };
+        let targets = evaluated(&flow)?;
         let evaluate = start.elapsed().as_secs_f64();
+        let finer = match &finer {
+            Some(finer) => {
+                let flow = self.flow_of(finer);
+                for (found, better) in targets.iter().zip(evaluated(&flow)?) {
+                    let off = (found.velocity - better.velocity).norm() / speed;
+                    error_estimate = error_estimate.max(SAFETY * off);
+                }
+                Some(Finer {
+                    bodies: self.bodies_of(finer, &misses),
+                    flow,
+                })
+            }
+            None => None,
+        };
+        let bodies = self.bodies_of(&solution, &misses);
         let seconds = solution.seconds;
         let own = seconds.assemble
             + seconds.factor
@@ -396,9 +400,10 @@ impl<'a> Suspension<'a> {
             + evaluate
             + estimate;
         Ok(Answer {
-            bodies: bodies.collect(),
+            bodies,
             targets,
             flow,
+            finer,
             error_estimate,
             largest_speed: speed,
             iterations: work.iterations,
@@ -419,6 +424,42 @@ impl<'a> Suspension<'a> {
                 refine: begin.elapsed().as_secs_f64() - own,
             },
         })
+    }
+
+    fn bodies_of(&self, solution: &Solution, misses: &[Miss]) -> Vec<BodyAnswer> {
+        let bodies = self.bodies.iter().enumerate().map(|(i, body)| {
+            let class = solution.classes.of(i);
+            let frame = &body.frame;
+            let volume = frame.scale().powi(2);
+            let of_shape = stresslet(&class.tables.discretization, &solution.layers[i]);
+            BodyAnswer {
+                motion: match body.motion {
+                    Motion::Given(motion) => motion,
+                    Motion::Free(_) => frame.motion_to_lab(solution.motions[i]),
+                },
+                wrench: match body.motion {
+                    Motion::Given(_) => frame.wrench_to_lab(solution.wrenches[i]),
+                    Motion::Free(wrench) => wrench,
+                },
+                stresslet: volume * frame.tensor_to_lab(&of_shape),
+                boundary_error: misses[i].largest,
+                resolution: (*class.kind.resolution).clone(),
+            }
+        });
+        bodies.collect()
+    }
+
+    fn flow_of(&self, solution: &Solution) -> SuspensionFlow {
+        SuspensionFlow {
+            bodies: (self.bodies.iter().enumerate())
+                .map(|(i, body)| BodyLayers {
+                    frame: body.frame,
+                    discretization: solution.classes.of(i).tables.discretization.clone(),
+                    layers: solution.layers[i].clone(),
+                })
+                .collect(),
+            background: self.background,
+        }
     }
 }
 

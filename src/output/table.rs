@@ -93,7 +93,7 @@ fn write_bodies(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
     let width = widest.max().unwrap_or(0).max("shape".len());
     writeln!(
         out,
-        "\nbodies; force, torque and stresslet (about the centre) are exerted by the body on the fluid"
+        "\nbodies; force and torque (about the centre) are exerted by the body on the fluid, the stresslet is that of the traction on the body (Batchelor)"
     )?;
     writeln!(
         out,

@@ -294,7 +294,7 @@ fn explain(setting: &Setting<'_>, error: SuspensionError) -> SolveError {
             stop: krylov::Stop::MaxIterations,
             ..
         } => SolveError::Failed(format!(
-            "{}: {error} (solver.max_iterations)",
+            "{}: {error} by solver.max_iterations",
             case.path.display()
         )),
         SuspensionError::Interrupted => SolveError::Interrupted,

@@ -74,10 +74,12 @@ pub(super) fn error_line(case: &Case, estimate: f64) -> String {
 
 fn write_error(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
     writeln!(out, "{}", error_line(case, report.error_estimate))?;
-    writeln!(
-        out,
-        "  (velocities at probes: relative to the largest speed imposed; forces, torques and rigid velocities: to their largest)"
-    )
+    let relative = if case.bodies.len() == 1 {
+        "(velocities at probes: relative to the largest speed imposed; forces, torques and rigid velocities: to their largest)"
+    } else {
+        "(velocities: relative to the largest speed; forces, and torques over sizes: to the largest of them)"
+    };
+    writeln!(out, "  {relative}")
 }
 
 fn write_known_flow(out: &mut String, test: &KnownFlowReport) -> fmt::Result {

@@ -27,6 +27,39 @@ fn three() -> Vec<Body<'static>> {
     bodies
 }
 
+/// Two discs that move side by side: nothing drives fluid through the narrow gap, whose tractions would be so large that they turn what little the velocity
+/// is off by into torques. By the reciprocal theorem the torque is the force when one disc turns.
+#[test]
+fn torques_in_a_narrow_gap_are_no_worse_than_estimated() {
+    let disc = spheroid(0.05, 1.0);
+    let discs = |motions: [Motion; 2]| {
+        let bodies = [0.0, 0.12]
+            .into_iter()
+            .zip(motions)
+            .map(|(z, motion)| Body {
+                motion,
+                ..Body::new(disc.clone(), at(0.0, 0.0, z))
+            });
+        Suspension::new(bodies.collect())
+    };
+    let (rest, x, y) = (Vector3::zeros(), Vector3::x(), Vector3::y());
+    let turning = answer(&discs([moving(rest, y), moving(rest, rest)]), 1e-7);
+    let exact: f64 = turning.bodies.iter().map(|body| body.wrench.force.x).sum();
+    for tolerance in [1e-2, 1e-3, 1e-4] {
+        let found = answer(&discs([moving(x, rest); 2]), tolerance);
+        let largest = (found.bodies.iter()).fold(0.0f64, |most, body| {
+            most.max(body.wrench.force.norm())
+                .max(body.wrench.torque.norm())
+        });
+        let error = (found.bodies[0].wrench.torque.y - exact).abs() / largest;
+        println!(
+            "{tolerance:e}: {error:.1e}, estimate {:.1e}",
+            found.error_estimate
+        );
+        assert!(error <= found.error_estimate && found.error_estimate <= tolerance);
+    }
+}
+
 /// Residuals are small in the mean: in a gap, where panels are short, an iteration leaves more. More panels would not help.
 #[test]
 fn what_an_iteration_leaves_in_a_gap_is_iterated_away() {

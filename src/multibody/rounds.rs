@@ -13,7 +13,7 @@ use super::resolution::{first, refined};
 use super::solution::{Care, Iteration, Solution};
 use super::spheres::facing_neighbours;
 use super::sums::Operators;
-use super::suspension::{Motion, Options, Suspension};
+use super::suspension::{Motion, Suspension};
 use crate::krylov::Stop;
 use crate::progress::Progress;
 
@@ -21,7 +21,7 @@ use crate::progress::Progress;
 const RESIDUAL: f64 = 0.1;
 const PRODUCT: f64 = 0.04;
 /// How far the estimate stays above what the boundary velocity is off by.
-pub(crate) const SAFETY: f64 = 2.0;
+const SAFETY: f64 = 2.0;
 /// What is left to rounding.
 const ROUNDING: f64 = 1e-14;
 /// Forces below this part of what the largest speed would make them count as if they were that large.
@@ -110,6 +110,16 @@ impl Work {
             iterations: work.iterations + solution.iteration.iterations,
             products: work.products + solution.iteration.products,
         })
+    }
+}
+
+fn care(tolerance: f64, residual: Option<f64>, memory: usize) -> Care {
+    let residual = residual.unwrap_or(RESIDUAL * tolerance);
+    Care {
+        tolerance,
+        residual: residual.max(LEAST),
+        product: (PRODUCT * tolerance).min(0.4 * residual).max(LEAST),
+        memory,
     }
 }
 
@@ -255,19 +265,10 @@ impl Suspension<'_> {
         progress: &dyn Progress,
     ) -> Result<Assembly, SuspensionError> {
         let needed = needed_memory(kinds, questions, &self.options);
-        let care = self.care(tolerance, self.memory().saturating_sub(needed));
+        let rest = self.memory().saturating_sub(needed);
+        let care = care(tolerance, self.options.residual, rest);
         let operators = operators.clone();
         Assembly::new(self, kinds, care, questions, known, operators, progress)
-    }
-
-    fn care(&self, tolerance: f64, memory: usize) -> Care {
-        let residual = self.options.residual.unwrap_or(RESIDUAL * tolerance);
-        Care {
-            tolerance,
-            residual: residual.max(LEAST),
-            product: (PRODUCT * tolerance).min(0.4 * residual).max(LEAST),
-            memory,
-        }
     }
 
     pub(crate) fn check_memory(
@@ -329,10 +330,12 @@ impl Suspension<'_> {
         let mut finer = None;
         if error_estimate <= look_at {
             finer = self.on_finer_surfaces(assembly, &solution, progress)?;
-            let apart = finer
-                .as_ref()
-                .map(|finer| self.apart(&solution, finer, speed));
-            error_estimate = error_estimate.max(SAFETY * apart.unwrap_or(0.0));
+            if let Some(finer) = &finer {
+                let tolerance = assembly.care().tolerance;
+                let apart = self.apart(&solution, finer, speed);
+                let in_flow = self.apart_in_flow(&solution, finer, speed, tolerance, progress)?;
+                error_estimate = error_estimate.max(SAFETY * apart.max(in_flow));
+            }
         }
         Ok(Round {
             solution,
@@ -363,15 +366,8 @@ impl Suspension<'_> {
         let mut finer = match assembly.take_finer() {
             Some(finer) => finer,
             None => {
-                let options = Options {
-                    residual: None,
-                    ..self.options
-                };
-                let care = Suspension {
-                    options,
-                    ..self.clone()
-                }
-                .care(FINER * assembly.care().tolerance, budget - 2 * needed);
+                let tolerance = FINER * assembly.care().tolerance;
+                let care = care(tolerance, None, budget - 2 * needed);
                 let operators = assembly.operators().clone();
                 let known = Classes::default();
                 let questions = Questions::One;
@@ -403,6 +399,22 @@ impl Suspension<'_> {
         }
         let scale = self.force_scale(one, speed);
         (motions / speed).max(if forces == 0.0 { 0.0 } else { forces / scale })
+    }
+
+    /// By how much the velocities at the targets differ, over the speed.
+    fn apart_in_flow(
+        &self,
+        one: &Solution,
+        other: &Solution,
+        speed: f64,
+        tolerance: f64,
+        progress: &dyn Progress,
+    ) -> Result<f64, SuspensionError> {
+        let at = |solution| self.at_targets(&self.flow_of(solution), tolerance, progress);
+        let (one, other) = (at(one)?, at(other)?);
+        let both = one.iter().zip(&other);
+        let apart = both.map(|(a, b)| (a.velocity - b.velocity).norm() / speed);
+        Ok(apart.fold(0.0, f64::max))
     }
 
     /// The largest force or torque over size on a held body, or a part of what the largest speed would make it.

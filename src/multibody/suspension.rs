@@ -41,7 +41,7 @@ use super::check::Miss;
 use super::class::{Classes, Kind, Role};
 use super::contact::{Gap, Placed, gaps};
 use super::flow::{BodyLayers, SuspensionFlow};
-use super::rounds::{Converged, REACH, Round, SAFETY, Work};
+use super::rounds::{Converged, REACH, Round, Work};
 use super::solution::{Iteration, Solution};
 use super::sums::Operators;
 use crate::body::dirichlet::Formulation;
@@ -362,35 +362,18 @@ impl<'a> Suspension<'a> {
             solution,
             misses,
             finer,
-            mut error_estimate,
+            error_estimate,
             speed,
             seconds: estimate,
         } = round;
         let flow = self.flow_of(&solution);
         let start = Instant::now();
-        let evaluated = |flow: &SuspensionFlow| {
-            if self.targets.is_empty() {
-                return Ok(Vec::new());
-            }
-            let tolerance = evaluation_tolerance(Some(tolerance));
-            flow.evaluate(self.targets, tolerance, progress)
-        };
-        let targets = evaluated(&flow)?;
+        let targets = self.at_targets(&flow, tolerance, progress)?;
         let evaluate = start.elapsed().as_secs_f64();
-        let finer = match &finer {
-            Some(finer) => {
-                let flow = self.flow_of(finer);
-                for (found, better) in targets.iter().zip(evaluated(&flow)?) {
-                    let off = (found.velocity - better.velocity).norm() / speed;
-                    error_estimate = error_estimate.max(SAFETY * off);
-                }
-                Some(Finer {
-                    bodies: self.bodies_of(finer, &misses),
-                    flow,
-                })
-            }
-            None => None,
-        };
+        let finer = finer.map(|finer| Finer {
+            bodies: self.bodies_of(&finer, &misses),
+            flow: self.flow_of(&finer),
+        });
         let bodies = self.bodies_of(&solution, &misses);
         let seconds = solution.seconds;
         let own = seconds.assemble
@@ -449,7 +432,20 @@ impl<'a> Suspension<'a> {
         bodies.collect()
     }
 
-    fn flow_of(&self, solution: &Solution) -> SuspensionFlow {
+    pub(crate) fn at_targets(
+        &self,
+        flow: &SuspensionFlow,
+        tolerance: f64,
+        progress: &dyn Progress,
+    ) -> Result<Vec<FlowAt>, SuspensionError> {
+        if self.targets.is_empty() {
+            return Ok(Vec::new());
+        }
+        let tolerance = evaluation_tolerance(Some(tolerance));
+        flow.evaluate(self.targets, tolerance, progress)
+    }
+
+    pub(crate) fn flow_of(&self, solution: &Solution) -> SuspensionFlow {
         SuspensionFlow {
             bodies: (self.bodies.iter().enumerate())
                 .map(|(i, body)| BodyLayers {

@@ -8,6 +8,7 @@ use super::check::{Checker, Miss};
 use super::class::{Class, Classes, Kind};
 use super::interactions::{InteractionError, Interactions, Use};
 use super::memory::VECTORS;
+use super::rounds::LEAST;
 use super::solution::{
     Care, Imposed, Iterated, Seconds, Solution, copy_modes, iterate, start_from,
 };
@@ -124,6 +125,11 @@ impl Assembly {
     /// How well the equations are solved.
     pub fn care(&self) -> &Care {
         &self.care
+    }
+
+    /// Asks for a residual that much smaller.
+    pub fn tighten(&mut self, factor: f64) {
+        self.care.residual = (factor * self.care.residual).max(LEAST);
     }
 
     /// What every body's boundary velocity is off by.

@@ -5,12 +5,13 @@
 //! radius $a$ in the rate of strain $E$ that is $t = 5 E\nu$, so that the stresslet is off by at most $\frac{20}{\sqrt 3}\pi a^2 \max|w|$; in a
 //! translation it is $\frac{3}{2a}U$, in a rotation $3\, \Omega \times \nu$. Other bodies are taken for spheres of their size. The pressure over a plane
 //! with the velocity $w$ is at most $\frac{8}{3\sqrt 3}\max|w|/d$ at the distance $d$, or $2 k \max|w|$ if nothing on it is shorter than $1/k$. In narrow gaps there is
-//! a solution on finer surfaces to compare with, and no estimate is less than twice the difference.
+//! a solution on finer surfaces to compare with, and no estimate is less than three times the difference.
 
 use std::f64::consts::PI;
 
 use nalgebra::Point3;
 
+use super::rounds::COMPARED;
 use super::suspension::{Answer, BodyAnswer};
 use crate::body::flow::meridian;
 
@@ -29,7 +30,7 @@ impl Answer {
         let apart = self.finer.as_ref().map_or(0.0, |finer| {
             (self.bodies[body].stresslet - finer.bodies[body].stresslet).norm()
         });
-        SAFETY * bound.max(apart)
+        (SAFETY * bound).max(COMPARED * apart)
     }
 
     /// The estimated absolute error of the rate of work $F \cdot U + T \cdot \Omega$ of a body without slip.
@@ -46,7 +47,7 @@ impl Answer {
         };
         let finer = self.finer.as_ref();
         let apart = finer.map_or(0.0, |it| (power(answer) - power(&it.bodies[body])).abs());
-        SAFETY * bound.max(apart)
+        (SAFETY * bound).max(COMPARED * apart)
     }
 
     /// The largest estimated absolute error of the pressures at some points of the fluid.
@@ -70,7 +71,8 @@ impl Answer {
             };
             (0..self.bodies.len()).map(of_body).sum()
         };
-        SAFETY * (points.iter().map(of_point)).fold(self.pressures_apart(points), f64::max)
+        let bound = points.iter().map(of_point).fold(0.0, f64::max);
+        (SAFETY * bound).max(COMPARED * self.pressures_apart(points))
     }
 
     /// By how much the pressures on finer surfaces are others.

@@ -39,6 +39,10 @@ const BLAMED: f64 = 2.0;
 const NARROW: f64 = 0.2;
 /// How much better the equations on finer surfaces are solved than those whose error they tell.
 const FINER: f64 = 0.1;
+/// How often more may be asked of them.
+const TIGHTENED: usize = 3;
+/// How far the estimate stays above the difference of two solutions: the finer one has an error too.
+pub(crate) const COMPARED: f64 = 3.0;
 /// Gaps of so many sizes of a body matter to its resolution.
 pub(crate) const REACH: f64 = 1.0;
 /// The largest tolerance to choose resolutions for.
@@ -46,7 +50,7 @@ const COARSEST: f64 = 1e-2;
 /// An iteration that stagnates or is cut short at so many times its residual is still worth an answer: the estimate tells how much.
 const STALLED: f64 = 100.0;
 /// Least relative residual and product.
-const LEAST: f64 = 1e-13;
+pub(crate) const LEAST: f64 = 1e-13;
 
 /// Where to begin.
 pub(crate) struct Start {
@@ -329,12 +333,13 @@ impl Suspension<'_> {
         let mut error_estimate = self.error_estimate(&solution, &misses, speed);
         let mut finer = None;
         if error_estimate <= look_at {
-            finer = self.on_finer_surfaces(assembly, &solution, progress)?;
+            let worst = misses.iter().map(|miss| miss.largest).fold(0.0, f64::max);
+            finer = self.on_finer_surfaces(assembly, &solution, worst, progress)?;
             if let Some(finer) = &finer {
                 let tolerance = assembly.care().tolerance;
                 let apart = self.apart(&solution, finer, speed);
                 let in_flow = self.apart_in_flow(&solution, finer, speed, tolerance, progress)?;
-                error_estimate = error_estimate.max(SAFETY * apart.max(in_flow));
+                error_estimate = error_estimate.max(COMPARED * apart.max(in_flow));
             }
         }
         Ok(Round {
@@ -348,13 +353,14 @@ impl Suspension<'_> {
     }
 
     /// Of what is imposed, and of free bodies.
-    /// The solution on the surfaces of the check, if memory does for it.
+    /// The solution on the surfaces of the check, if memory does for it, iterated until little is left of a velocity that was off by `worst`.
     ///
     /// Where gaps are narrow, the tractions that go with small velocities are large: by how much forces are off no velocity tells.
     fn on_finer_surfaces(
         &self,
         assembly: &mut Assembly,
         solution: &Solution,
+        worst: f64,
         progress: &dyn Progress,
     ) -> Result<Option<Solution>, SuspensionError> {
         let kinds = assembly.finer_kinds();
@@ -374,7 +380,16 @@ impl Suspension<'_> {
                 Assembly::new(self, &kinds, care, questions, &known, operators, progress)?
             }
         };
-        let found = finer.solve(self, Some(solution), progress)?;
+        let mut found = finer.solve(self, Some(solution), progress)?;
+        for _ in 0..TIGHTENED {
+            // Residuals are small in the mean: in a gap, where panels are short, they may be all that was off.
+            let left = found.left.iter().copied().fold(0.0, f64::max);
+            if left <= FINER * worst || found.iteration.stop != Stop::Converged {
+                break;
+            }
+            finer.tighten(FINER * worst / left);
+            found = finer.solve(self, Some(&found), progress)?;
+        }
         assembly.keep_finer(finer);
         Ok(Some(found))
     }

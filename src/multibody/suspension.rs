@@ -169,7 +169,7 @@ pub struct Answer {
     /// torques over sizes, relative to the largest of them or, where that vanishes, to a hundredth of $6\pi$ times size and largest speed.
     ///
     /// It is twice the largest velocity by which the boundary condition is missed on finer surfaces. Where gaps are narrow small velocities go with
-    /// large tractions; then the equations are solved on those surfaces, too, and it is no less than twice the difference.
+    /// large tractions; then the equations are solved on those surfaces, too, and it is no less than three times the difference.
     pub error_estimate: f64,
     /// The largest speed on the surfaces, of what is imposed and of the free bodies' motions.
     pub largest_speed: f64,

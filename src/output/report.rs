@@ -94,6 +94,8 @@ pub enum Stop {
     Converged,
     /// The residual no longer fell, not far above what it was to be: the error estimate tells whether that was enough.
     Stagnated,
+    /// No more iterations were allowed, not far above what it was to be: the error estimate tells whether they were enough.
+    Exhausted,
 }
 
 /// Seconds of wall clock spent in each stage.

@@ -37,19 +37,17 @@ fn write_table(out: &mut String, case: &Case, report: &Report, all: bool) -> fmt
     }
     write_discretization(out, &report.discretization)?;
     let (stop, residual) = (report.stop, report.residual.unwrap_or_default());
-    let solve = match stop {
-        Stop::Direct => "direct solve".to_owned(),
-        Stop::Converged | Stop::Stagnated => {
-            let how = if stop == Stop::Converged {
-                "to"
-            } else {
-                "stagnated at"
-            };
-            let (iterations, products) = (report.iterations, report.products);
-            format!(
-                "{iterations} iterations {how} a residual of {residual:.1e}, {products} products"
-            )
-        }
+    let how = match stop {
+        Stop::Direct => "",
+        Stop::Converged => "to",
+        Stop::Stagnated => "stagnated at",
+        Stop::Exhausted => "(no more were allowed) to",
+    };
+    let solve = if stop == Stop::Direct {
+        "direct solve".to_owned()
+    } else {
+        let (iterations, products) = (report.iterations, report.products);
+        format!("{iterations} iterations {how} a residual of {residual:.1e}, {products} products")
     };
     let points = report.points.map(|points| format!(", {points} points"));
     let points = points.unwrap_or_default();

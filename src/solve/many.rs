@@ -178,6 +178,7 @@ fn report(
         residual: Some(answer.iteration.residual),
         stop: match answer.iteration.stop {
             krylov::Stop::Converged => Stop::Converged,
+            krylov::Stop::MaxIterations => Stop::Exhausted,
             _ => Stop::Stagnated,
         },
         unknowns: answer.unknowns,

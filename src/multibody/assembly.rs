@@ -72,9 +72,9 @@ impl Assembly {
             Questions::One => care.memory,
             Questions::Many => care.memory / 4,
         };
-        let often = Use::Often { memory };
+        let uses = Use::Often { memory };
         let interactions =
-            Interactions::new(members, care.product, often, operators.clone(), &done)?;
+            Interactions::new(members, care.product, uses, operators.clone(), &done)?;
         let kept = (questions == Questions::Many).then_some(care.memory - memory);
         let checker = Checker::new(bodies, &classes, kept)?;
         let system = System::new(classes.clone(), interactions, suspension.options.two_level);
@@ -300,11 +300,11 @@ impl Assembly {
         let tables: Vec<Arc<Tables>> = tables.collect::<Result<_, InteractionError>>()?;
         let members = members(bodies, |body| tables[self.classes.index_of(body)].clone());
         let operators = self.operators.clone();
-        let often = match self.questions {
+        let uses = match self.questions {
             Questions::One => Use::Once,
             Questions::Many => Use::Often { memory: 0 },
         };
-        Interactions::new(members, self.care.product, often, operators, &|_| ())
+        Interactions::new(members, self.care.product, uses, operators, &|_| ())
     }
 }
 

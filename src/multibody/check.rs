@@ -281,13 +281,13 @@ impl Checker {
                 tables: tables[index].clone(),
                 frame: body.frame,
             });
-        let often = self.kept.as_ref().map_or(Use::Once, |kept| Use::Often {
+        let uses = self.kept.as_ref().map_or(Use::Once, |kept| Use::Often {
             memory: kept.memory,
         });
         Ok(Interactions::new(
             members.collect(),
             tolerance,
-            often,
+            uses,
             operators.clone(),
             &|_| (),
         )?)

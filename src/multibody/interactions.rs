@@ -51,7 +51,7 @@ pub(crate) struct Interactions {
     positions: Vec<[f64; 3]>,
     normals: Vec<[f64; 3]>,
     near: Near,
-    often: Use,
+    uses: Use,
     sums: Sums,
     singularities: Singularities,
     /// Wall-clock seconds of all sums so far.
@@ -71,7 +71,7 @@ impl Interactions {
     pub fn new(
         members: Vec<Member>,
         tolerance: f64,
-        often: Use,
+        uses: Use,
         operators: Operators,
         done: &(dyn Fn(usize) + Sync),
     ) -> Result<Self, InteractionError> {
@@ -99,14 +99,14 @@ impl Interactions {
             (true, false) => Singularities::Stokeslets,
             _ => Singularities::Stresslets,
         };
-        let memory = match often {
+        let memory = match uses {
             Use::Once => 0,
             Use::Often { memory } => memory,
         };
         let near = Near::new(&members, tolerance, memory, done)?;
         Ok(Self {
             near,
-            often,
+            uses,
             batches: Batches::new(&members),
             own: Vec::new(),
             strengths: Vec::new(),
@@ -210,7 +210,7 @@ impl Interactions {
     /// What the sum over all points did to each body's own, from the densities in `own`.
     fn sum_own_points(&mut self) {
         let (members, fields) = (&self.members, &self.fields);
-        if self.often == Use::Once {
+        if self.uses == Use::Once {
             for (tables, batches) in self.batches.by_tables() {
                 let matrices = tables.new_point_sum();
                 batches.apply(fields, &mut self.own, |_, n, columns, scratch| {

@@ -352,7 +352,6 @@ impl Suspension<'_> {
         })
     }
 
-    /// Of what is imposed, and of free bodies.
     /// The solution on the surfaces of the check, if memory does for it, iterated until little is left of a velocity that was off by `worst`.
     ///
     /// Where gaps are narrow, the tractions that go with small velocities are large: by how much forces are off no velocity tells.
@@ -446,6 +445,7 @@ impl Suspension<'_> {
         scale
     }
 
+    /// Of what is imposed, and of free bodies.
     fn largest_speed(&self, solution: &Solution) -> f64 {
         let speeds = self.bodies.iter().enumerate().map(|(i, body)| {
             let motion = &solution.motions[i];

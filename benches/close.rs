@@ -6,7 +6,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use axistokes::curve::GeneratingCurve;
+use axistokes::geometry::curve::GeneratingCurve;
 use axistokes::nalgebra::{Point3, Vector3};
 use axistokes::*;
 

@@ -4,7 +4,7 @@
 
 use axistokes::body::dirichlet::{DirichletSolver, Formulation};
 use axistokes::body::discretization::Discretization;
-use axistokes::curve::{Panels, Spheroid};
+use axistokes::geometry::curve::{Panels, Spheroid};
 use axistokes::progress::Silent;
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ fn main() {
 }
 
 mod kernel {
-    use axistokes::kernel::bench::{DirectSum, Method, ModalPairs};
+    use axistokes::body::kernel::bench::{DirectSum, Method, ModalPairs};
     use divan::counter::ItemsCount;
     use divan::{Bencher, black_box};
     use nalgebra::Point3;

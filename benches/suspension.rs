@@ -108,7 +108,7 @@ fn frames(count: usize, chance: &mut fastrand::Rng) -> Vec<Frame> {
                 break Unit::new_normalize(v);
             }
         };
-        Frame::new(center, axis)
+        Frame::along(center, axis)
     };
     (0..count).map(|i| frame(i, chance)).collect()
 }

@@ -57,12 +57,10 @@
 //!
 //! | module | what |
 //! |---|---|
-//! | [`special`] | toroidal functions |
-//! | [`kernel`] | kernels of the layer potentials, in free space and mode by mode: signs and scaling |
-//! | [`curve`] | generating curves and panels on them |
-//! | [`body`] | matrices, factors, boundary problems and flow of one body, in its own frame and for viscosity 1 |
+//! | [`geometry`] | bodies of revolution: curves, panels, frames, gaps |
+//! | [`body`] | one body, in its own frame and for viscosity 1 |
 //! | [`krylov`] | Krylov methods for operators known by their products |
-//! | [`multibody`] | suspensions: many bodies, their interactions, gaps and contact, in the laboratory and for viscosity 1 |
+//! | [`multibody`] | suspensions: many bodies, in the laboratory and for viscosity 1 |
 //! | [`case`] | case files |
 //! | [`output`] | reports as tables and JSON, plots; on top of [`plane`], pictures and VTK files |
 //! | [`mod@solve`] | from a case to its report: frames and viscosity |
@@ -73,22 +71,25 @@
 //!
 //! The types of most programs are here at the root too, and [`nalgebra`], whose vectors and points they take.
 
-pub mod body;
 pub mod case;
-pub mod curve;
-pub mod kernel;
-pub mod krylov;
-pub mod multibody;
 pub mod output;
 pub mod plane;
-pub mod progress;
 pub mod resistance;
 pub mod solve;
-pub mod special;
 pub mod study;
 
+pub use bodies_of_revolution as geometry;
+pub use inexact_krylov as krylov;
 pub use nalgebra;
+pub use stokes_body as body;
+pub use stokes_body::progress;
+pub use stokes_suspension as multibody;
 
+#[doc(inline)]
+pub use bodies_of_revolution::{
+    Biconcave, Capsule, CurveError, Frame, FunctionCurve, GeneratingCurve, Meridian, Outline,
+    Panels, Polar, Profile, RigidMotion, Shape, Spheroid, Torus, Wrench,
+};
 #[doc(inline)]
 pub use body::body_flow::BodyFlow;
 #[doc(inline)]
@@ -98,7 +99,7 @@ pub use body::discretization::Discretization;
 #[doc(inline)]
 pub use body::flow::{Flow, FlowError};
 #[doc(inline)]
-pub use body::frame::Frame;
+pub use body::kernel::{FlowAt, FlowGradientAt, Stokeslet};
 #[doc(inline)]
 pub use body::linear_flow::LinearFlow;
 #[doc(inline)]
@@ -108,18 +109,9 @@ pub use body::problem::{Answer, Motion, Problem, ProblemError, Resolution};
 #[doc(inline)]
 pub use body::resistance::{MobilityMatrix, ResistanceMatrix, RigidBodyMatrices, ScalarFunctions};
 #[doc(inline)]
-pub use body::rigid::{RigidMotion, Wrench};
-#[doc(inline)]
 pub use body::slip::{pole_to_pole, squirmer};
 #[doc(inline)]
 pub use body::surface::SurfaceModes;
-#[doc(inline)]
-pub use curve::{
-    Biconcave, Capsule, CurveError, FunctionCurve, GeneratingCurve, Meridian, Outline, Panels,
-    Polar, Profile, Spheroid, Torus,
-};
-#[doc(inline)]
-pub use kernel::{FlowAt, FlowGradientAt, Stokeslet};
 #[doc(inline)]
 pub use multibody::suspension::{Body, Suspension};
 #[doc(inline)]

@@ -1,12 +1,12 @@
 //! From a case to the resistance of its shapes.
 
-use crate::body::problem::ProblemError;
-use crate::body::resistance::RigidBodyMatrices;
 use crate::case::{Accuracy, Case};
-use crate::curve::Panels;
 use crate::output::{ResistanceReport, ShapeReport};
-use crate::progress::Progress;
 use crate::solve::SolveError;
+use bodies_of_revolution::Panels;
+use stokes_body::problem::ProblemError;
+use stokes_body::progress::Progress;
+use stokes_body::resistance::RigidBodyMatrices;
 
 /// Resistance and mobility of every shape of a case, each about its origin and in its own frame: bodies and what is imposed on them
 /// do not matter.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use axistokes::body::dirichlet::Formulation;
 use axistokes::body::discretization::Discretization;
-use axistokes::curve::{Biconcave, GeneratingCurve, Panels, Spheroid, Torus};
+use axistokes::geometry::curve::{Biconcave, GeneratingCurve, Panels, Spheroid, Torus};
 use rayon::prelude::*;
 
 /// The largest condition number of modes up to `n_max`, and its mode.

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use axistokes::body::dirichlet::{DirichletSolver, Formulation};
 use axistokes::body::discretization::Discretization;
+use axistokes::body::kernel::{FlowAt, Stokeslet};
 use axistokes::body::surface::SurfaceModes;
-use axistokes::curve::{GeneratingCurve, Panels, Spheroid, Torus};
-use axistokes::kernel::{FlowAt, Stokeslet};
+use axistokes::geometry::curve::{GeneratingCurve, Panels, Spheroid, Torus};
 use axistokes::progress::Silent;
 use nalgebra::{Matrix3, Point3, Vector3};
 

@@ -26,7 +26,7 @@ fn a_tilted_capsule_sinks_as_its_mobility_says() {
     let curve = std::sync::Arc::new(Capsule::new(0.5, 2.0).expect("a capsule"));
     let matrices = RigidBodyMatrices::to_tolerance(curve, 1e-10, &Silent).expect("matrices");
     let axis = Unit::new_normalize(Vector3::new(0.5, 0.0, 0.75f64.sqrt()));
-    let frame = Frame::new([0.0; 3].into(), axis);
+    let frame = Frame::along([0.0; 3].into(), axis);
     let force = frame.vector_to_body(-Vector3::z()) / 3.0;
     let motion = matrices.mobility.0 * Vector6::new(force.x, force.y, force.z, 0.0, 0.0, 0.0);
     let velocity = frame.vector_to_lab(motion.fixed_rows::<3>(0).into());

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use axistokes::kernel::{Ring, RingKernel};
+use axistokes::body::kernel::{Ring, RingKernel};
 
 /// Runs `solve --json` on a case with this text.
 fn solve(name: &str, text: &str) -> Output {

@@ -4,13 +4,13 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use axistokes::RigidMotion;
 use axistokes::body::discretization::Discretization;
 use axistokes::body::flow::Flow;
 use axistokes::body::layers::{LayerWeights, Layers};
 use axistokes::body::matrix::{LayerPotential, ModalMatrices};
-use axistokes::body::rigid::{RigidMotion, Wrench};
 use axistokes::body::surface::SurfaceModes;
-use axistokes::curve::{Biconcave, Capsule, GeneratingCurve, Panels, Spheroid, Torus};
+use axistokes::geometry::curve::{Biconcave, Capsule, GeneratingCurve, Panels, Spheroid, Torus};
 use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
 
@@ -275,7 +275,7 @@ fn gauss_identities() {
         let double = ModalMatrices::of(LayerPotential::Double, &body, 1).expect("matrices");
         let mut worst = 0.0f64;
         for motion in motions() {
-            let density = motion.on(&body);
+            let density = SurfaceModes::of_motion(&body, &motion);
             let values = double.apply(&body, &density);
             for n in 0..=1 {
                 worst = worst.max(largest_difference(&values, &density, n));
@@ -323,7 +323,7 @@ fn net_force() {
         let mut targets = Vec::new();
         for node in sphere.nodes() {
             targets.extend((0..around).map(|k| {
-                let (sin, cos) = (2.0 * PI * f64::from(k) / f64::from(around)).sin_cos();
+                let (sin, cos) = (2.0 * PI * k as f64 / around as f64).sin_cos();
                 Point3::new(node.r * cos, node.r * sin, node.z)
             }));
         }
@@ -334,11 +334,11 @@ fn net_force() {
             let mut sum = Vector3::zeros();
             for (node, ring) in sphere.nodes().iter().zip(at.chunks(around as usize)) {
                 let ring: Vector3<f64> = ring.iter().map(|at| at.velocity).sum();
-                sum += node.weight * 2.0 * PI / f64::from(around) * ring;
+                sum += node.weight * 2.0 * PI / around as f64 * ring;
             }
             sum / sphere.area()
         };
-        let force = Wrench::of(&body, &density).force;
+        let force = density.wrench(&body).force;
         let scale = force.norm() / (6.0 * PI * radius);
         let of_double = mean(1.0, 0.0).norm() / scale;
         let of_single = (mean(0.0, 1.0) - force / (6.0 * PI * radius)).norm() / scale;
@@ -361,7 +361,7 @@ fn rigid_motions_are_at_rest_outside() {
             Point3::new(-s, s, -s),
         ];
         for motion in motions() {
-            let density = motion.on(&body);
+            let density = SurfaceModes::of_motion(&body, &motion);
             let weights = LayerWeights {
                 double: 1.0,
                 single: 0.0,

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use axistokes::body::dirichlet::{DirichletSolver, Formulation};
 use axistokes::body::discretization::Discretization;
+use axistokes::body::kernel::Stokeslet;
 use axistokes::body::surface::SurfaceModes;
 use axistokes::case::Case;
-use axistokes::curve::{Panels, Spheroid};
-use axistokes::kernel::Stokeslet;
+use axistokes::geometry::curve::{Panels, Spheroid};
 use axistokes::progress::Silent;
 use nalgebra::{Point3, Vector3};
 

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use axistokes::body::dirichlet::{DirichletSolver, Formulation};
 use axistokes::body::discretization::Discretization;
+use axistokes::body::kernel::{FlowAt, Stokeslet};
 use axistokes::body::surface::SurfaceModes;
-use axistokes::curve::{Panels, Spheroid};
-use axistokes::kernel::{FlowAt, Stokeslet};
+use axistokes::geometry::curve::{Panels, Spheroid};
 use axistokes::progress::Silent;
 use nalgebra::{Point3, Vector3};
 

@@ -1,6 +1,6 @@
 //! Toroidal functions against 40-digit values (tests/data/toroidal.csv).
 
-use axistokes::special::toroidal::Toroidal;
+use axistokes::body::special::toroidal::Toroidal;
 
 #[test]
 fn functions_differences_and_derivatives_match_high_precision() {

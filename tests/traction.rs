@@ -184,7 +184,7 @@ fn of_a_double_layer_does_not_jump() {
         let inside = flow.traction(Side::Interior).expect("a traction");
         let jump = outside.clone().plus(-1.0, &inside);
         let jump = (0..=12).map(|n| jump.amplitude(n)).fold(0.0, f64::max);
-        let Wrench { force, torque } = Wrench::of(&nodes, &outside);
+        let Wrench { force, torque } = outside.wrench(&nodes);
         println!(
             "{:?}: jump {jump:.1e}, force {:.1e}, torque {:.1e}",
             nodes.curve(),
@@ -214,7 +214,7 @@ fn integrates_to_force_and_torque() {
                 background,
                 ..Problem::new(curve.clone())
             });
-            let found = Wrench::of(&answer.body_flow.discretization, &traction);
+            let found = traction.wrench(&answer.body_flow.discretization);
             let scale = answer.wrench.force.norm().max(answer.wrench.torque.norm());
             let force = (found.force + answer.wrench.force).norm() / scale;
             let torque = (found.torque + answer.wrench.torque).norm() / scale;

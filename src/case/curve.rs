@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use super::ShapeSpec;
-use crate::curve::{
-    Biconcave, Capsule, CurveError, GeneratingCurve, Polar, Profile, Spheroid, Torus, check_simple,
+use bodies_of_revolution::{
+    Biconcave, Capsule, CurveError, GeneratingCurve, Polar, Profile, Spheroid, Torus,
+    curve::check_simple,
 };
 
 impl ShapeSpec {

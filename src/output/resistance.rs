@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use super::table::{number, numbers};
 use super::{Discretization, error_line};
-use crate::body::resistance::{RigidBodyMatrices, ScalarFunctions};
 use crate::case::Case;
+use stokes_body::resistance::{RigidBodyMatrices, ScalarFunctions};
 
 /// What `axistokes resistance` reports.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -14,7 +14,7 @@ pub mod streamlines;
 
 use nalgebra::{Point3, Unit, Vector3};
 
-use crate::kernel::FlowAt;
+use stokes_body::kernel::FlowAt;
 
 /// A rectangle in space with a grid of points on it, corners included; lengths in the units of the case.
 ///

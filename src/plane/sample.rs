@@ -1,8 +1,8 @@
 //! Evaluating the flow in a plane.
 
 use super::{Plane, PlaneFlow};
-use crate::progress::Progress;
 use crate::solve::{SolveError, Solved};
+use stokes_body::progress::Progress;
 
 /// Relative accuracy of what is drawn.
 const TOLERANCE: f64 = 1e-6;

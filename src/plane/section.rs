@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 use nalgebra::Point3;
 
 use super::Plane;
-use crate::body::frame::Frame;
-use crate::curve::{CurveError, GeneratingCurve, Outline, Topology};
 use crate::solve::Solved;
+use bodies_of_revolution::Frame;
+use bodies_of_revolution::{CurveError, GeneratingCurve, Outline, Topology};
 
 /// Points on a stretch of the curve that the plane cuts, beside the outline's own corners.
 const POINTS: usize = 128;
@@ -147,7 +147,7 @@ fn root(mut from: f64, mut to: f64, f: impl Fn(f64) -> f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::curve::{Spheroid, Torus};
+    use bodies_of_revolution::{Spheroid, Torus};
     use nalgebra::{Unit, Vector3};
 
     fn plane(center: [f64; 3], normal: [f64; 3]) -> Plane {
@@ -178,7 +178,7 @@ mod tests {
     #[test]
     fn of_a_spheroid_is_an_ellipse() {
         let curve = Spheroid::new(1.0, 0.5).unwrap();
-        let frame = Frame::new(
+        let frame = Frame::along(
             Point3::new(0.1, 0.2, 0.3),
             Unit::new_normalize(Vector3::new(1.0, 2.0, 3.0)),
         );
@@ -211,7 +211,7 @@ mod tests {
     #[test]
     fn of_a_torus_is_two_discs_a_ring_or_an_oval() {
         let curve = Torus::new(1.0, 0.25).unwrap();
-        let frame = Frame::new(Point3::origin(), Vector3::z_axis());
+        let frame = Frame::along(Point3::origin(), Vector3::z_axis());
         let discs = section(&curve, &frame, &plane([0.0; 3], [0.0, 1.0, 0.0])).unwrap();
         assert_eq!(discs.len(), 2);
         let ring = section(&curve, &frame, &plane([0.0; 3], [0.0, 0.0, 1.0])).unwrap();

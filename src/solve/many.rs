@@ -4,17 +4,17 @@ use std::sync::Arc;
 
 use super::setting::{Found, Placed, Setting};
 use super::{SolveError, Solved, SolvedBody, Whole, formulation};
-use crate::body::problem::{Resolution, evaluation_tolerance};
-use crate::body::surface::SurfaceModes;
 use crate::case::{Accuracy, Case, CaseError, Method};
-use crate::curve::{GeneratingCurve, Panels};
-use crate::krylov;
-use crate::multibody::SuspensionError;
-use crate::multibody::contact::ContactError;
-use crate::multibody::flow::BodyLayers;
-use crate::multibody::suspension::{Answer, Body, Options, Suspension};
 use crate::output::{Report, Stop, Timings};
-use crate::progress::Progress;
+use bodies_of_revolution::ContactError;
+use bodies_of_revolution::{GeneratingCurve, Panels};
+use inexact_krylov as krylov;
+use stokes_body::problem::{Resolution, evaluation_tolerance};
+use stokes_body::progress::Progress;
+use stokes_body::surface::SurfaceModes;
+use stokes_suspension::SuspensionError;
+use stokes_suspension::flow::BodyLayers;
+use stokes_suspension::suspension::{Answer, Body, Options, Suspension};
 
 /// Tolerance of sums and iterations where panels, order and modes are chosen by hand.
 const BY_HAND: f64 = 1e-10;
@@ -115,7 +115,8 @@ fn surfaces(setting: &Setting<'_>, answer: &Answer) -> Vec<SolvedBody> {
         .zip(&answer.flow.bodies);
     let surface = bodies.map(|((placed, found), layers)| {
         let discretization = &layers.discretization;
-        let motion = layers.frame.motion_to_body(found.motion).on(discretization);
+        let motion =
+            SurfaceModes::of_motion(discretization, &layers.frame.motion_to_body(found.motion));
         SolvedBody {
             frame: layers.frame,
             velocity: match slip(placed, layers) {
@@ -278,6 +279,7 @@ fn explain(setting: &Setting<'_>, error: SuspensionError) -> SolveError {
             line(body, body),
             format!("{}: {quantity} is {value}: expected {expected}", name(body)),
         ),
+        other => CaseError::new(case.path.display(), None, other.to_string()),
     };
     match error {
         SuspensionError::Contact(error) => contact(error).into(),

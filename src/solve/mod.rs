@@ -4,10 +4,8 @@
 //! |---|---|
 //! | `setting` | the bodies in their places, and what of the report does not depend on how they are solved for |
 //! | `single` | one body: a direct solution in its own frame |
-//! | `many` | more: a [suspension](crate::multibody) |
-//! | `inside` | which body a point is in |
+//! | `many` | more: a [suspension](stokes_suspension) |
 
-mod inside;
 mod many;
 mod setting;
 mod single;
@@ -15,18 +13,18 @@ mod single;
 use nalgebra::Point3;
 use rayon::prelude::*;
 
-use crate::body::body_flow::BodyFlow;
-use crate::body::dirichlet;
-use crate::body::discretization::Discretization;
-use crate::body::frame::Frame;
-use crate::body::surface::SurfaceModes;
 use crate::case::{Case, CaseError, Formulation};
-use crate::kernel::FlowAt;
-use crate::multibody::flow::SuspensionFlow;
 use crate::output::Report;
-use crate::progress::{Progress, Silent};
-use inside::Insides;
+use bodies_of_revolution::Frame;
+use bodies_of_revolution::Insides;
 use setting::Setting;
+use stokes_body::body_flow::BodyFlow;
+use stokes_body::dirichlet;
+use stokes_body::discretization::Discretization;
+use stokes_body::kernel::FlowAt;
+use stokes_body::progress::{Progress, Silent};
+use stokes_body::surface::SurfaceModes;
+use stokes_suspension::flow::SuspensionFlow;
 
 /// Why a case has no answer.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -5,16 +5,16 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix3, Point3, Unit, Vector3};
 
-use super::inside::Insides;
-use crate::body::frame::Frame;
-use crate::body::linear_flow::LinearFlow;
-use crate::body::problem::{Motion, Resolution};
-use crate::body::rigid::{RigidMotion, Wrench};
-use crate::body::slip::{pole_to_pole, squirmer};
 use crate::case::{self, Background, Case, CaseError, Slip};
-use crate::curve::GeneratingCurve;
-use crate::kernel::{FlowAt, Stokeslet};
 use crate::output::{BodyReport, Discretization, KnownFlowReport, ProbeReport};
+use bodies_of_revolution::Frame;
+use bodies_of_revolution::GeneratingCurve;
+use bodies_of_revolution::Insides;
+use bodies_of_revolution::{RigidMotion, Wrench};
+use stokes_body::kernel::{FlowAt, Stokeslet};
+use stokes_body::linear_flow::LinearFlow;
+use stokes_body::problem::{Motion, Resolution};
+use stokes_body::slip::{pole_to_pole, squirmer};
 
 /// A velocity as a function of the point.
 pub(super) type Velocity<'a> = dyn Fn(Vector3<f64>) -> Vector3<f64> + Sync + 'a;
@@ -63,7 +63,7 @@ impl<'a> Setting<'a> {
                 }
             };
             let axis = Unit::new_normalize(body.axis.into());
-            let frame = Frame::new(body.center.into(), axis).scaled(body.scale);
+            let frame = Frame::along(body.center.into(), axis).scaled(body.scale);
             bodies.push(Placed {
                 body,
                 frame,
@@ -214,7 +214,10 @@ impl<'a> Setting<'a> {
         largest_speed: f64,
     ) -> Option<KnownFlowReport> {
         self.case.test.as_ref()?;
-        let known = known_flow(self.case, &Frame::new(Point3::origin(), Vector3::z_axis()));
+        let known = known_flow(
+            self.case,
+            &Frame::along(Point3::origin(), Vector3::z_axis()),
+        );
         let errors = probes.iter().map(|probe| {
             let exact: Vector3<f64> = known.iter().map(|s| s.velocity(probe.point.into())).sum();
             (exact - Vector3::from(probe.velocity)).amax()

@@ -5,14 +5,14 @@ use panel_quadrature::QuadratureError;
 
 use super::setting::{Found, Setting};
 use super::{SolveError, Solved, SolvedBody, Whole, formulation};
-use crate::body::problem::{
+use crate::case::Accuracy;
+use crate::output::{Report, Stop, Timings};
+use bodies_of_revolution::Panels;
+use stokes_body::kernel::FlowAt;
+use stokes_body::problem::{
     Answer, Motion, Problem, ProblemError, Resolution, evaluation_tolerance,
 };
-use crate::case::Accuracy;
-use crate::curve::Panels;
-use crate::kernel::FlowAt;
-use crate::output::{Report, Stop, Timings};
-use crate::progress::Progress;
+use stokes_body::progress::Progress;
 
 /// Solves a case of one body.
 pub(super) fn solve(setting: &Setting<'_>, progress: &dyn Progress) -> Result<Solved, SolveError> {
@@ -26,7 +26,7 @@ pub(super) fn solve(setting: &Setting<'_>, progress: &dyn Progress) -> Result<So
             Motion::Free(wrench) => Motion::Free(frame.wrench_to_body(wrench)),
         },
         slip: placed.slip.as_deref(),
-        background: frame.flow_to_body(&setting.background()),
+        background: setting.background().in_frame(&frame),
         targets: &targets,
         formulation: formulation(case),
         ..Problem::new(placed.curve.clone())

@@ -3,9 +3,9 @@
 use super::plan::MEMORY;
 use super::setup::{Errors, Setup};
 use super::{StudyError, bytes, spheroid};
-use crate::body::dirichlet::{DirichletSolver, Formulation};
-use crate::body::surface::SurfaceModes;
-use crate::progress::{Progress, Silent};
+use stokes_body::dirichlet::{DirichletSolver, Formulation};
+use stokes_body::progress::{Progress, Silent};
+use stokes_body::surface::SurfaceModes;
 
 /// Errors at or below this are rounding as much as discretisation, and say nothing about the order of convergence.
 pub const ROUNDING: f64 = 1e-12;

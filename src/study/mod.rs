@@ -21,9 +21,9 @@ use std::sync::Arc;
 
 use panel_quadrature::QuadratureError;
 
-use crate::body::discretization::Discretization;
-use crate::body::flow::FlowError;
-use crate::curve::{CurveError, Panels, Spheroid};
+use bodies_of_revolution::{CurveError, Panels, Spheroid};
+use stokes_body::discretization::Discretization;
+use stokes_body::flow::FlowError;
 
 /// The spheroid's half axis along its axis of symmetry.
 pub const POLAR: f64 = 1.0;

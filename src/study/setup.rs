@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use fastrand::Rng;
 use nalgebra::{Point3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
-use crate::kernel::Stokeslet;
+use stokes_body::kernel::Stokeslet;
 
 /// Stokeslets in the body.
 pub const STOKESLETS: usize = 5;

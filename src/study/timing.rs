@@ -8,9 +8,9 @@ use super::plan::{MEMORY, MODES_PER_PANEL};
 use super::power_law::PowerLaw;
 use super::setup::Setup;
 use super::{StudyError, bytes, points, spheroid};
-use crate::body::dirichlet::{DirichletSolver, Formulation};
-use crate::body::surface::SurfaceModes;
-use crate::progress::{Progress, Silent};
+use stokes_body::dirichlet::{DirichletSolver, Formulation};
+use stokes_body::progress::{Progress, Silent};
+use stokes_body::surface::SurfaceModes;
 
 /// The stages: names in the order of [`Timing::seconds`].
 pub const STAGES: [&str; 4] = ["assemble", "factor", "solve", "evaluate"];

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use axistokes::curve::arc_length;
+use axistokes::geometry::curve::arc_length;
 use axistokes::{
     Biconcave, Capsule, Discretization, GeneratingCurve, Panels, Spheroid, Stokeslet, Torus,
 };

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use axistokes::curve::{Biconcave, Capsule, GeneratingCurve, Panels, Torus};
+use axistokes::geometry::curve::{Biconcave, Capsule, GeneratingCurve, Panels, Torus};
 
 use super::resistance::{error, four, resistance, rows};
 

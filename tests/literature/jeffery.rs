@@ -19,8 +19,8 @@ fn errors(solver: &MobilitySolver, aspect: f64, flow: &LinearFlow, rng: &mut Rng
     for _ in 0..20 {
         let center = Point3::from(random_vector(rng));
         let axis = Unit::new_normalize(random_vector(rng));
-        let frame = Frame::new(center, axis);
-        let background = frame.flow_to_body(flow).on(solver.discretization()).modes;
+        let frame = Frame::along(center, axis);
+        let background = flow.in_frame(&frame).on(solver.discretization()).modes;
         let rest = SurfaceModes::zero(0, background.nodes());
         let (motion, _) = solver.solve(Wrench::zero(), rest.plus(-1.0, &background));
         let lambda = (aspect * aspect - 1.0) / (aspect * aspect + 1.0);
@@ -71,11 +71,11 @@ fn every_aspect_and_orientation_turns_as_in_closed_form() {
 #[test]
 fn a_tilted_rod_in_shear() {
     let axis = Unit::new_normalize(Vector3::new(0.8, 0.0, 0.6));
-    let frame = Frame::new(Point3::origin(), axis);
+    let frame = Frame::along(Point3::origin(), axis);
     let flow = LinearFlow::shear(1.0, Vector3::x(), Vector3::z());
     let problem = Problem {
         motion: Motion::Free(Wrench::zero()),
-        background: frame.flow_to_body(&flow),
+        background: flow.in_frame(&frame),
         ..Problem::new(Arc::new(Spheroid::new(1.0, 0.25).expect("a spheroid")))
     };
     let answer = problem.to_tolerance(1e-11, &Silent).expect("an answer");

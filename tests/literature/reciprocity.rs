@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use axistokes::curve::{GeneratingCurve, Panels, Polar};
+use axistokes::geometry::curve::{GeneratingCurve, Panels, Polar};
 use nalgebra::{Matrix6, Vector3};
 
 use super::resistance::Resistor;

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use axistokes::body::dirichlet::{DirichletSolver, Formulation};
 use axistokes::body::discretization::Discretization;
-use axistokes::body::rigid::{RigidMotion, Wrench};
-use axistokes::curve::{GeneratingCurve, Panels};
+use axistokes::geometry::curve::{GeneratingCurve, Panels};
 use axistokes::progress::Silent;
+use axistokes::{RigidMotion, Wrench};
 use nalgebra::Vector3;
 
 /// Force along and across the axis, torque along and across it.

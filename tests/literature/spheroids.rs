@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use axistokes::curve::{GeneratingCurve, Panels, Spheroid};
+use axistokes::geometry::curve::{GeneratingCurve, Panels, Spheroid};
 
 use super::resistance::{Resistance, error, four, resistance, rows};
 

@@ -1,6 +1,6 @@
 //! Grand matrices of random clusters: symmetric, positive, and the same in any frame and units.
 
-use axistokes::multibody::contact::{Placed, gaps};
+use axistokes::geometry::{Placed, gaps};
 use axistokes::{Body, Frame, Silent, Suspension};
 use nalgebra::{DMatrix, Point3, Rotation3, Unit};
 
@@ -14,7 +14,7 @@ fn cluster(seed: u64, least: f64) -> Suspension<'static> {
     let mut bodies: Vec<Body<'static>> = Vec::new();
     while bodies.len() < count {
         let center = Point3::from(4.0 * random(&mut rng));
-        let frame = Frame::new(center, direction(&mut rng)).scaled(0.5 + rng.f64());
+        let frame = Frame::along(center, direction(&mut rng)).scaled(0.5 + rng.f64());
         bodies.push(Body::new(curves[rng.usize(0..3)].clone(), frame));
         let placed: Vec<Placed<'_>> = (bodies.iter())
             .map(|body| Placed {
@@ -83,10 +83,11 @@ fn look_the_same_from_any_side() {
     let turned = moved(&|frame| {
         let center = rotation * frame.center() + shift;
         let axis = Unit::new_normalize(rotation * frame.axis().into_inner());
-        Frame::new(center, axis).scaled(frame.scale())
+        Frame::along(center, axis).scaled(frame.scale())
     });
-    let enlarged =
-        moved(&|frame| Frame::new(3.0 * frame.center(), frame.axis()).scaled(3.0 * frame.scale()));
+    let enlarged = moved(&|frame| {
+        Frame::along(3.0 * frame.center(), frame.axis()).scaled(3.0 * frame.scale())
+    });
     let count = 6 * cluster.bodies.len();
     let turn = DMatrix::from_fn(count, count, |i, j| {
         if i / 3 == j / 3 {

@@ -20,7 +20,7 @@ pub fn ball() -> Curve {
 }
 
 pub fn at(x: f64, y: f64, z: f64) -> Frame {
-    Frame::new(Point3::new(x, y, z), Vector3::z_axis())
+    Frame::along(Point3::new(x, y, z), Vector3::z_axis())
 }
 
 pub fn moving(velocity: Vector3<f64>, angular_velocity: Vector3<f64>) -> Motion {

@@ -1,8 +1,8 @@
 //! What cannot be answered is refused with an error that says why.
 
 use axistokes::body::linear_flow::LinearFlow;
+use axistokes::geometry::ContactError;
 use axistokes::multibody::SuspensionError;
-use axistokes::multibody::contact::ContactError;
 use axistokes::multibody::suspension::Answer;
 use axistokes::{Body, Frame, Motion, Progress, Silent, Suspension, Wrench};
 use nalgebra::{Point3, Unit, Vector3};
@@ -78,7 +78,7 @@ fn places() {
         (at(0.0, 0.0, 5.0).scaled(-1.0), "scale"),
         (at(0.0, 0.0, 5.0).scaled(f64::NAN), "scale"),
         (
-            Frame::new(
+            Frame::along(
                 Point3::new(0.0, 0.0, 5.0),
                 Unit::new_unchecked(Vector3::repeat(f64::NAN)),
             ),
@@ -166,7 +166,7 @@ fn moved() -> Suspension<'static> {
     let mut pair = pair(2.5);
     pair.bodies[0].motion = moving(Vector3::new(1.0, 2.0, 3.0), Vector3::x());
     pair.bodies[1].curve = spheroid(1.0, 0.6);
-    pair.bodies[1].frame = Frame::new(
+    pair.bodies[1].frame = Frame::along(
         Point3::new(0.0, 0.3, 2.5),
         Unit::new_normalize(Vector3::new(1.0, 2.0, 0.5)),
     );

@@ -21,7 +21,7 @@ fn iterations(side: usize, free: bool) -> usize {
             modes: 8,
         }));
         let center = Point3::from(cell.map(|i| 2.4 * i as f64));
-        let frame = Frame::new(center, direction(&mut rng));
+        let frame = Frame::along(center, direction(&mut rng));
         let (first, second) = (random(&mut rng), random(&mut rng));
         bodies.push(Body {
             motion: if free {

@@ -30,7 +30,7 @@ fn four() -> Suspension<'static> {
         },
         ..Body::new(
             curves[k % 2].clone(),
-            Frame::new(Point3::from(place), direction(&mut rng)),
+            Frame::along(Point3::from(place), direction(&mut rng)),
         )
     });
     Suspension::new(bodies.collect())

@@ -17,7 +17,7 @@ fn three() -> Vec<Body<'static>> {
         Point3::new(-0.2, 0.3, 2.4),
     ];
     let curves = [spheroid(1.0, 0.5), spheroid(0.5, 0.8), ball()];
-    let frames = places.map(|center| Frame::new(center, direction(&mut rng)));
+    let frames = places.map(|center| Frame::along(center, direction(&mut rng)));
     let mut bodies: Vec<Body<'static>> = curves
         .into_iter()
         .zip(frames)
@@ -196,7 +196,7 @@ fn free_spheres_far_apart_turn_with_the_fluid() {
         motion: Motion::Free(axistokes::Wrench::zero()),
         ..Body::new(
             ball(),
-            Frame::new(Point3::from(s * line.into_inner()), direction(&mut rng)),
+            Frame::along(Point3::from(s * line.into_inner()), direction(&mut rng)),
         )
     });
     let answer = answer(
@@ -242,7 +242,7 @@ fn known_flow(tolerances: &[f64]) {
     let frames: Vec<Frame> = (0..8)
         .map(|i| {
             let place = Point3::new((i % 2) as f64, (i / 2 % 2) as f64, (i / 4) as f64) * 2.3;
-            Frame::new(place, direction(&mut rng)).scaled(0.7 + 0.3 * rng.f64())
+            Frame::along(place, direction(&mut rng)).scaled(0.7 + 0.3 * rng.f64())
         })
         .collect();
     let stokeslets: Vec<Stokeslet> = (frames.iter())

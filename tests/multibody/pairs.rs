@@ -30,7 +30,7 @@ fn pair(label: &str) -> Suspension<'static> {
         "general" => {
             let axis = Unit::new_normalize(Vector3::new(1.0, 0.0, 1.0));
             [
-                (rod, Frame::new(Point3::origin(), axis)),
+                (rod, Frame::along(Point3::origin(), axis)),
                 (spheroid(0.6, 0.6), at(1.2, 0.7, -0.9)),
             ]
         }

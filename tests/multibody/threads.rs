@@ -28,7 +28,7 @@ fn solve(tolerance: f64, panels: usize, order: usize, modes: usize) -> Answer {
             } else {
                 moving(random(&mut rng), random(&mut rng))
             },
-            ..Body::new(curve, Frame::new(center, direction(&mut rng)))
+            ..Body::new(curve, Frame::along(center, direction(&mut rng)))
         });
     }
     let targets: Vec<Point3<f64>> = (0..50)

@@ -43,7 +43,7 @@ struct Found {
 fn solved(row: &Row, axes: [Unit<Vector3<f64>>; 2], kept: bool, tolerance: f64) -> Found {
     let curve = ball();
     let frames: [Frame; 2] = std::array::from_fn(|k| {
-        Frame::new(Point3::new(0.0, 0.0, k as f64 * row.distance), axes[k]).scaled(row.radii[k])
+        Frame::along(Point3::new(0.0, 0.0, k as f64 * row.distance), axes[k]).scaled(row.radii[k])
     });
     let rest = Vector3::zeros();
     let (z, xz) = (Vector3::z(), Vector3::x());

@@ -13,10 +13,10 @@ use svg::node::element::{
 use svg::{Document, Node};
 
 use super::plot::colour::{blue_red, viridis};
-use crate::kernel::FlowAt;
 use crate::plane::streamlines::{Streamline, evenly_spaced};
 use crate::plane::{Plane, PlaneFlow};
 use axis::Axis;
+use stokes_body::kernel::FlowAt;
 
 /// What the colours show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

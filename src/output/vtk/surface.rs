@@ -10,11 +10,11 @@ use vtkio::model::{
 };
 
 use super::{VtkError, bytes, flat, vectors};
-use crate::body::discretization::Discretization;
-use crate::body::surface::SurfaceModes;
-use crate::curve::Topology;
-use crate::progress::Progress;
 use crate::solve::{SolveError, Solved, SolvedBody};
+use bodies_of_revolution::Topology;
+use stokes_body::discretization::Discretization;
+use stokes_body::progress::Progress;
+use stokes_body::surface::SurfaceModes;
 
 /// The surfaces of all bodies as closed meshes with what acts on them, in the laboratory.
 #[derive(Clone, Debug, Default)]

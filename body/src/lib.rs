@@ -1,0 +1,56 @@
+//! One body: its modal matrices and their factors, boundary problems on it, and the flow around it.
+//!
+//! Everything here is in the body's own frame: symmetry axis `z`, centre at the origin of its generating curve.
+//!
+//! | module | what |
+//! |---|---|
+//! | [`special`] | toroidal functions |
+//! | [`kernel`] | kernels of the layer potentials, in free space and mode by mode: signs and scaling |
+//! | [`dirichlet`] | Dirichlet problems: equations and solver |
+//! | [`mobility`] | bodies that are free to move |
+//! | [`discretization`] | panels and nodes on the generating curve |
+//! | [`matrix`] | modal Nyström matrices |
+//! | [`surface`] | vector fields on the surface and their modes |
+//! | [`factors`] | factors of the modal matrices, which belong to the shape |
+//! | [`layers`] | the layer potentials that make up a flow |
+//! | [`flow`] | velocity, pressure and stress at any point |
+//! | [`linear_flow`] | undisturbed flows |
+//! | [`body_flow`] | the whole flow, as it was solved for |
+//! | [`problem`] | exterior problems, answered with an estimate of the error |
+//! | [`resistance`] | resistance and mobility matrices |
+//! | `rigid` | rigid motions of the surface, force and torque of a density |
+//! | [`shell`] | the projection onto rigid motions |
+//! | [`slip`] | surface velocities of swimmers |
+//! | [`stresslet`] | the stresslet |
+//! | [`progress`] | how a long computation tells where it is |
+
+pub mod body_flow;
+mod close;
+mod densities;
+pub mod dirichlet;
+pub mod discretization;
+pub mod factors;
+pub mod far;
+pub mod flow;
+pub mod influence;
+pub mod kernel;
+pub mod layers;
+pub mod linear_flow;
+pub mod matrix;
+pub mod mobility;
+mod near;
+#[cfg(test)]
+mod near_tests;
+mod point_sums;
+pub mod problem;
+pub mod progress;
+pub mod refinement;
+pub mod resistance;
+mod rigid;
+pub mod shell;
+pub mod slip;
+pub mod special;
+mod storage;
+pub mod stresslet;
+pub mod surface;
+pub mod surface_grid;

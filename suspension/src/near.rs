@@ -1,0 +1,400 @@
+//! Points of one body that are near another: where the sum over points does not resolve what some panels do.
+//!
+//! There a sum over [more points](super::upsampling) takes the place of the panels' points or, nearer still, the panels' exact action. That is a linear
+//! map of the density: its rows are kept where memory allows, and made anew each time where it does not.
+
+use std::sync::Arc;
+
+use nalgebra::{Point3, Vector3};
+use panel_quadrature::QuadratureError;
+use rayon::prelude::*;
+
+use super::tables::Member;
+use super::upsampling::{self, Upsampling};
+use bodies_of_revolution::Meridian;
+use stokes_body::far::Separation;
+use stokes_body::influence::Buffers;
+use stokes_body::surface_grid::PointVectors;
+
+/// The points of one body that are near one other body.
+#[derive(Debug)]
+pub(crate) struct Visit {
+    /// The other body.
+    source: usize,
+    /// Ring after ring about the other body's axis, the points on it: their numbers among those of their own body, and where they are in the frame of the
+    /// other body.
+    points: Vec<(usize, Point3<f64>)>,
+    rings: Vec<NearRing>,
+    /// The panels of all rings that are done exactly.
+    panels: Vec<u32>,
+    /// The panels of all rings that are done with more points, and with which of the upsamplings.
+    finer: Vec<(u32, usize)>,
+    /// The rows of all rings, or none if they are made each time.
+    rows: Option<Vec<f64>>,
+}
+
+/// Points at one radius and height about the other body's axis: they have the same rows. Bodies on one axis have hardly anything else.
+#[derive(Clone, Copy, Debug)]
+struct NearRing {
+    /// How many of the points are on it, and how many of the panels of both kinds are its own.
+    points: usize,
+    panels: usize,
+    finer: usize,
+}
+
+/// Difference of radius and height, in units of the body's size, of points on one ring.
+const GRAIN: f64 = 1e-14;
+
+/// All that is near, body by body.
+#[derive(Debug)]
+pub(crate) struct Near {
+    visits: Vec<Vec<Visit>>,
+    /// Those upsamplings of each body that are used.
+    upsampled: Vec<[Option<Arc<Upsampling>>; upsampling::LEVELS]>,
+    /// Bytes of the rows that are kept.
+    pub stored: usize,
+}
+
+/// A body's density at its points, and at more of them.
+#[derive(Debug)]
+pub(crate) struct Strengths {
+    pub points: PointVectors,
+    pub upsampled: Vec<PointVectors>,
+}
+
+/// A thread's buffers.
+#[derive(Debug, Default)]
+struct Room {
+    buffers: Buffers,
+    rows: Vec<f64>,
+}
+
+impl Near {
+    /// Finds what the points do not resolve to `tolerance`, and makes the rows as far as they fit into `memory` bytes.
+    ///
+    /// # Errors
+    /// If a quadrature rule is missing.
+    pub fn new(
+        members: &[Member],
+        tolerance: f64,
+        memory: usize,
+        done: &(dyn Fn(usize) + Sync),
+    ) -> Result<Self, QuadratureError> {
+        let surroundings: Vec<Surrounding> = members
+            .par_iter()
+            .map(|member| Surrounding::new(member, tolerance))
+            .collect();
+        let mut visits: Vec<Vec<Visit>> = (0..members.len())
+            .into_par_iter()
+            .map(|body| visits(members, &surroundings, body))
+            .collect();
+        let mut stored = 0;
+        let mut upsampled = vec![[const { None }; upsampling::LEVELS]; members.len()];
+        for visit in visits.iter_mut().flatten() {
+            for &(_, level) in &visit.finer {
+                let used = &mut upsampled[visit.source][level];
+                if used.is_none() {
+                    *used = Some(members[visit.source].tables.upsampling(level)?);
+                }
+            }
+            let bytes = 8 * visit.len(members);
+            if stored + bytes <= memory {
+                stored += bytes;
+                visit.rows = Some(Vec::new());
+            }
+        }
+        let rows = |room: &mut Room, visits: &mut Vec<Visit>| {
+            for visit in visits {
+                visit.fill(members, room)?;
+            }
+            done(1);
+            Ok(())
+        };
+        visits
+            .par_iter_mut()
+            .try_for_each_init(Room::default, rows)?;
+        Ok(Self {
+            visits,
+            upsampled,
+            stored,
+        })
+    }
+
+    /// The upsamplings of a body that are used.
+    pub fn upsamplings(&self, body: usize) -> impl Iterator<Item = Option<&Upsampling>> {
+        self.upsampled[body].iter().map(Option::as_deref)
+    }
+
+    /// Room for a body's density at its points, and at those of the upsamplings that are used.
+    pub fn strengths(&self, members: &[Member], body: usize) -> Strengths {
+        let upsampled = self.upsamplings(body).map(|upsampling| {
+            upsampling.map_or_else(PointVectors::default, |it| it.grid.vectors())
+        });
+        Strengths {
+            points: members[body].tables.grid.vectors(),
+            upsampled: upsampled.collect(),
+        }
+    }
+
+    /// Adds, to the velocities of a body's points in the laboratory (`velocity(point)`), what is exact less what the points of the panels do:
+    /// `field` and `strengths` are the densities of all bodies, as modes and at their points.
+    pub fn correct<'f>(
+        &self,
+        members: &[Member],
+        body: usize,
+        field: impl Fn(usize) -> &'f [f64],
+        strengths: &[Strengths],
+        velocity: &mut [[f64; 3]],
+    ) -> Result<(), QuadratureError> {
+        let mut room = Room::default();
+        for visit in &self.visits[body] {
+            visit.correct(
+                members,
+                field(visit.source),
+                &strengths[visit.source],
+                &self.upsampled[visit.source],
+                velocity,
+                &mut room,
+            )?;
+        }
+        Ok(())
+    }
+
+    /// Points that are near another body, counted once for each.
+    pub fn points(&self) -> usize {
+        let visits = self.visits.iter().flatten();
+        visits.map(|visit| visit.points.len()).sum()
+    }
+}
+
+/// From where on a body is resolved, and how far from its centre that may be.
+struct Surrounding {
+    separation: Separation,
+    /// With more points, from few to many.
+    finer: Vec<Separation>,
+    /// In the laboratory, of the sphere about the centre that the body fits in.
+    radius: f64,
+    /// In the laboratory, the distance from that sphere beyond which everything is resolved.
+    reach: f64,
+}
+
+impl Surrounding {
+    fn new(member: &Member, tolerance: f64) -> Self {
+        let tables = &member.tables;
+        let separation = Separation::of_resolved(
+            &tables.discretization,
+            tables.n_max,
+            [tables.discretization.order(), tables.grid.azimuths()],
+            tolerance,
+        );
+        let finer = (0..upsampling::LEVELS).map(|level| {
+            upsampling::separation(&tables.discretization, tables.n_max, level, tolerance)
+        });
+        let radius = tables.discretization.size();
+        let scale = member.frame.scale();
+        Self {
+            reach: scale * separation.reach(&tables.discretization, radius),
+            radius: scale * radius,
+            finer: finer.collect(),
+            separation,
+        }
+    }
+}
+
+/// The other bodies that points of a body are near.
+fn visits(members: &[Member], surroundings: &[Surrounding], body: usize) -> Vec<Visit> {
+    let member = &members[body];
+    let center = member.frame.center();
+    let mut visits = Vec::new();
+    for (source, (other, around)) in members.iter().zip(surroundings).enumerate() {
+        let beyond = around.radius + around.reach;
+        let distance = (other.frame.center() - center).norm();
+        if source == body || distance > beyond + surroundings[body].radius {
+            continue;
+        }
+        let visit = visit(member, source, other, around, beyond);
+        if !visit.points.is_empty() {
+            visits.push(visit);
+        }
+    }
+    visits
+}
+
+fn visit(
+    member: &Member,
+    source: usize,
+    other: &Member,
+    around: &Surrounding,
+    beyond: f64,
+) -> Visit {
+    let grid = &member.tables.grid;
+    let discretization = &other.tables.discretization;
+    let beyond = beyond / other.frame.scale();
+    let grain = GRAIN * discretization.size();
+    let mut near: Vec<([i64; 2], usize, Point3<f64>)> = Vec::new();
+    for (index, place) in grid.places().enumerate() {
+        let at = other
+            .frame
+            .point_to_body(member.frame.point_to_lab(grid.position(place)));
+        if at.coords.norm() <= beyond {
+            let seen = Meridian::of(&at);
+            near.push((
+                [seen.r, seen.z].map(|x| (x / grain).round() as i64),
+                index,
+                at,
+            ));
+        }
+    }
+    near.sort_unstable_by_key(|&(ring, index, _)| (ring, index));
+    let mut visit = Visit {
+        source,
+        points: Vec::new(),
+        rings: Vec::new(),
+        panels: Vec::new(),
+        finer: Vec::new(),
+        rows: None,
+    };
+    for ring in near.chunk_by(|a, b| a.0 == b.0) {
+        let seen = Meridian::of(&ring[0].2);
+        let before = [visit.panels.len(), visit.finer.len()];
+        for panel in 0..discretization.panels().len() {
+            let keeps = |separation: &Separation| separation.is_kept(discretization, seen, panel);
+            if keeps(&around.separation) {
+                continue;
+            }
+            match around.finer.iter().position(keeps) {
+                Some(level) => visit.finer.push((panel as u32, level)),
+                None => visit.panels.push(panel as u32),
+            }
+        }
+        let panels = visit.panels.len() - before[0];
+        let finer = visit.finer.len() - before[1];
+        if panels + finer > 0 {
+            visit.rings.push(NearRing {
+                points: ring.len(),
+                panels,
+                finer,
+            });
+            visit
+                .points
+                .extend(ring.iter().map(|&(_, index, at)| (index, at)));
+        }
+    }
+    visit
+}
+
+impl Visit {
+    /// How many numbers all rows together have.
+    fn len(&self, members: &[Member]) -> usize {
+        let tables = &members[self.source].tables;
+        tables
+            .influence
+            .len(&tables.discretization, self.panels.len())
+    }
+
+    /// Makes the rows, if they are to be kept.
+    fn fill(&mut self, members: &[Member], room: &mut Room) -> Result<(), QuadratureError> {
+        let length = self.len(members);
+        let Some(rows) = &mut self.rows else {
+            return Ok(());
+        };
+        rows.resize(length, 0.0);
+        let tables = &members[self.source].tables;
+        let (mut points, mut panels) = (&self.points[..], &self.panels[..]);
+        let mut rest = &mut rows[..];
+        for ring in &self.rings {
+            let (on_ring, other_points) = points.split_at(ring.points);
+            let (own, others) = panels.split_at(ring.panels);
+            (points, panels) = (other_points, others);
+            if own.is_empty() {
+                continue;
+            }
+            let length = tables.influence.len(&tables.discretization, own.len());
+            let (rows, others_rows) = std::mem::take(&mut rest).split_at_mut(length);
+            tables.influence.fill(
+                &tables.discretization,
+                tables.weights,
+                on_ring[0].1,
+                own,
+                &mut room.buffers,
+                rows,
+            )?;
+            rest = others_rows;
+        }
+        Ok(())
+    }
+
+    fn correct(
+        &self,
+        members: &[Member],
+        field: &[f64],
+        strengths: &Strengths,
+        upsampled: &[Option<Arc<Upsampling>>],
+        velocity: &mut [[f64; 3]],
+        room: &mut Room,
+    ) -> Result<(), QuadratureError> {
+        let member = &members[self.source];
+        let tables = &member.tables;
+        let (influence, discretization) = (&tables.influence, &tables.discretization);
+        let (mut points, mut panels) = (&self.points[..], &self.panels[..]);
+        let (mut finer, mut kept) = (&self.finer[..], self.rows.as_deref());
+        for ring in &self.rings {
+            let (on_ring, other_points) = points.split_at(ring.points);
+            let (own, others) = panels.split_at(ring.panels);
+            let (own_finer, other_finer) = finer.split_at(ring.finer);
+            (points, panels, finer) = (other_points, others, other_finer);
+            let length = influence.len(discretization, own.len());
+            let rows = match &mut kept {
+                Some(rows) => {
+                    let (mine, others) = rows.split_at(length);
+                    *rows = others;
+                    mine
+                }
+                None if own.is_empty() => &[],
+                None => {
+                    room.rows.resize(length, 0.0);
+                    influence.fill(
+                        discretization,
+                        tables.weights,
+                        on_ring[0].1,
+                        own,
+                        &mut room.buffers,
+                        &mut room.rows[..length],
+                    )?;
+                    &room.rows[..length]
+                }
+            };
+            for &(index, at) in on_ring {
+                let of_points = |panel: u32| {
+                    let (panel, strengths) = (panel as usize, &strengths.points);
+                    tables
+                        .grid
+                        .panel_velocity(panel, tables.weights, strengths, at)
+                };
+                let mut better = Vector3::zeros();
+                if !own.is_empty() {
+                    better += influence.velocity(discretization, rows, own, field, at);
+                }
+                for &panel in own {
+                    better -= of_points(panel);
+                }
+                for &(panel, level) in own_finer {
+                    if let Some(upsampling) = &upsampled[level] {
+                        let of_more = upsampling.grid.panel_velocity(
+                            panel as usize,
+                            tables.weights,
+                            &strengths.upsampled[level],
+                            at,
+                        );
+                        better += of_more - of_points(panel);
+                    }
+                }
+                let correction = member.frame.vector_to_lab(better);
+                for k in 0..3 {
+                    velocity[index][k] += correction[k];
+                }
+            }
+        }
+        Ok(())
+    }
+}

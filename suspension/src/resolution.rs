@@ -1,0 +1,288 @@
+//! How finely each body is cut, before and after what is known of its error.
+//!
+//! Two bodies that face each other over a gap $d$ see each other's images gather at a distance of $\delta = d/2 + \sqrt{d a + d^2/4}$ from the surface, for
+//! a radius $a$ (the poles of bispherical coordinates): what panels and modes have to resolve there. Modes and panels are chosen from a short list,
+//! so that alike bodies stay alike and share their factors.
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+
+use super::SuspensionError;
+use super::check::Miss;
+use super::class::Kind;
+use super::suspension::{Body, Suspension};
+use bodies_of_revolution::Gap;
+use bodies_of_revolution::Meridian;
+use bodies_of_revolution::{GeneratingCurve, Panels};
+use stokes_body::problem::{Problem, ProblemError, Resolution};
+use stokes_body::refinement::{ORDER, first_panels};
+
+/// What of the digits modes and panels have to resolve in a gap: images are weaker the nearer they are.
+const GAP_DIGITS: f64 = 0.75;
+/// The sine of the angle between axes and lines of centres up to which bodies are coaxial.
+const COAXIAL: f64 = 1e-14;
+/// Bisections of one panel at first.
+const DEEPEST: usize = 12;
+/// Most modes.
+const MOST_MODES: usize = 400;
+
+/// What all modes that are missing together may do, in the largest of them.
+const ALIASES: f64 = 8.0;
+
+/// The first resolutions for a tolerance.
+pub(crate) fn first(
+    suspension: &Suspension<'_>,
+    gaps: &[Gap],
+    tolerance: f64,
+) -> Result<Vec<Arc<Resolution>>, SuspensionError> {
+    let coaxial = are_coaxial(&suspension.bodies);
+    let mut known: Vec<(Arc<dyn GeneratingCurve>, Arc<Resolution>)> = Vec::new();
+    let mut resolutions = Vec::with_capacity(suspension.bodies.len());
+    for (index, body) in suspension.bodies.iter().enumerate() {
+        let at_body = |error| SuspensionError::Curve { body: index, error };
+        let panels = first_panels(&*body.curve, tolerance).map_err(at_body)?;
+        let problem = Problem {
+            slip: body.slip,
+            background: suspension.background.in_frame(&body.frame),
+            ..Problem::new(body.curve.clone())
+        };
+        let of_data = problem
+            .modes_for(&panels, tolerance)
+            .map_err(|error| match error {
+                ProblemError::Curve(error) => at_body(error),
+                _ => SuspensionError::Velocity { body: index },
+            })?;
+        let facing: Vec<Facing> = gaps
+            .iter()
+            .filter_map(|gap| Facing::of(gap, index, body))
+            .collect();
+        let modes = if coaxial {
+            of_data
+        } else {
+            let in_gaps = facing.iter().map(|facing| facing.modes(tolerance));
+            listed(in_gaps.fold(of_data.max(8), usize::max))
+        };
+        let resolution = Resolution {
+            panels: graded(&*body.curve, panels, &facing, tolerance),
+            order: ORDER,
+            modes,
+        };
+        let same = known
+            .iter()
+            .find(|(curve, other)| Arc::ptr_eq(curve, &body.curve) && **other == resolution);
+        let shared = match same {
+            Some((_, shared)) => shared.clone(),
+            None => {
+                let shared = Arc::new(resolution);
+                known.push((body.curve.clone(), shared.clone()));
+                shared
+            }
+        };
+        resolutions.push(shared);
+    }
+    Ok(resolutions)
+}
+
+/// Whether all bodies have one axis: their modes do not mix.
+pub(crate) fn are_coaxial(bodies: &[Body<'_>]) -> bool {
+    let axis = bodies[0].frame.axis();
+    let origin = bodies[0].frame.center();
+    bodies.iter().all(|body| {
+        let apart: Vector3<f64> = body.frame.center() - origin;
+        body.frame.axis().cross(&axis).norm() <= COAXIAL
+            && apart.cross(&axis).norm() <= COAXIAL * apart.norm()
+    })
+}
+
+/// The least number of modes in the list that is enough: two for each doubling.
+fn listed(modes: usize) -> usize {
+    let list = (2..).flat_map(|k| [1 << k, 3 << (k - 1)]);
+    list.into_iter().find(|&n| n >= modes).unwrap_or(modes)
+}
+
+/// Another body across a gap, in the frame of the one that looks.
+struct Facing {
+    /// The nearest point of the own surface, in the half plane.
+    point: [f64; 2],
+    /// $\delta$.
+    depth: f64,
+}
+
+impl Facing {
+    fn of(gap: &Gap, index: usize, body: &Body<'_>) -> Option<Self> {
+        let side = gap.bodies.iter().position(|&b| b == index)?;
+        let scale = body.frame.scale();
+        let at = Meridian::of(&body.frame.point_to_body(gap.points[side]));
+        let d = gap.distance / scale;
+        let radius = at.r.hypot(at.z);
+        Some(Self {
+            point: [at.r, at.z],
+            depth: 0.5 * d + (d * radius + 0.25 * d * d).sqrt(),
+        })
+    }
+
+    /// Modes that resolve the ring that faces.
+    fn modes(&self, tolerance: f64) -> usize {
+        let decay = (self.depth / self.point[0]).ln_1p();
+        ((-GAP_DIGITS * tolerance.ln() / decay) as usize).min(MOST_MODES)
+    }
+}
+
+/// Panels bisected until each is short beside what it faces.
+fn graded(
+    curve: &dyn GeneratingCurve,
+    mut panels: Panels,
+    facing: &[Facing],
+    tolerance: f64,
+) -> Panels {
+    // The Bernstein ellipse through a point at distance x from the middle of a panel of half length 1 has sinh(log rho) = x.
+    let needed = (-GAP_DIGITS * tolerance.ln() / ORDER as f64).sinh();
+    for _ in 0..DEEPEST {
+        let marked: Vec<bool> = panels
+            .iter()
+            .map(|panel| {
+                let places = [-1.0, 0.0, 1.0].map(|t| curve.point(panel.at(t)));
+                let length = (0..2)
+                    .map(|k| (places[k + 1].r - places[k].r).hypot(places[k + 1].z - places[k].z))
+                    .sum::<f64>();
+                facing.iter().any(|facing| {
+                    let away = places
+                        .iter()
+                        .map(|p| (p.r - facing.point[0]).hypot(p.z - facing.point[1]));
+                    let away = away.fold(f64::INFINITY, f64::min);
+                    0.5 * length * needed > facing.depth.hypot(away)
+                })
+            })
+            .collect();
+        if !marked.contains(&true) {
+            break;
+        }
+        panels = panels.bisected(|panel| marked[panel]);
+    }
+    panels.graded_across_joints(curve)
+}
+
+/// Finer resolutions where a boundary velocity is off by more than is `allowed` on a body; bodies that are alike in kind stay so if both are refined.
+pub(crate) fn refined(
+    kinds: &[Kind],
+    misses: &[Miss],
+    allowed: impl Fn(usize) -> f64,
+) -> Vec<Kind> {
+    let mut groups: Vec<(&Kind, Vec<bool>, bool)> = Vec::new();
+    let mut group_of = vec![None; kinds.len()];
+    for (body, (kind, miss)) in kinds.iter().zip(misses).enumerate() {
+        let allowed = allowed(body);
+        if miss.largest <= allowed {
+            continue;
+        }
+        let (panels, modes) = wanted(kind, miss, allowed);
+        let known = groups.iter().position(|(other, ..)| *other == kind);
+        let group = known.unwrap_or_else(|| {
+            groups.push((kind, vec![false; panels.len()], false));
+            groups.len() - 1
+        });
+        for (all, panel) in groups[group].1.iter_mut().zip(panels) {
+            *all |= panel;
+        }
+        groups[group].2 |= modes;
+        group_of[body] = Some(group);
+    }
+    let finer: Vec<Arc<Resolution>> = groups
+        .iter()
+        .map(|(kind, marked, more_modes)| {
+            let Resolution {
+                panels,
+                order,
+                modes,
+            } = &*kind.resolution;
+            let bisected = panels.bisected(|panel| marked[panel]);
+            Arc::new(Resolution {
+                panels: bisected.graded_across_joints(&*kind.curve),
+                order: *order,
+                modes: if *more_modes {
+                    listed(modes + modes / 4 + 1).min(MOST_MODES)
+                } else {
+                    *modes
+                },
+            })
+        })
+        .collect();
+    let refined = kinds.iter().zip(group_of).map(|(kind, group)| match group {
+        Some(group) => Kind {
+            resolution: finer[group].clone(),
+            ..kind.clone()
+        },
+        None => kind.clone(),
+    });
+    refined.collect()
+}
+
+/// Which panels a body wants bisected, and whether it wants more modes.
+fn wanted(kind: &Kind, miss: &Miss, allowed: f64) -> (Vec<bool>, bool) {
+    let n_max = kind.resolution.modes;
+    let beyond = miss
+        .modes
+        .iter()
+        .skip(n_max + 1)
+        .fold(0.0, |a: f64, &b| a.max(b));
+    let more_modes = beyond > 0.25 * allowed;
+    let worst = miss.panels.iter().fold(0.0, |a: f64, &b| a.max(b));
+    // Where modes are short, those that are missing are taken for lower ones on all panels.
+    let by_alias = if more_modes { ALIASES * beyond } else { 0.0 };
+    let threshold = allowed.max(0.02 * worst).max(by_alias);
+    let marked: Vec<bool> = (miss.panels.iter())
+        .map(|&of_panel| of_panel > threshold)
+        .collect();
+    if more_modes || marked.contains(&true) {
+        return (marked, more_modes);
+    }
+    // Nothing stands out: a little of everything.
+    let marked = miss.panels.iter().map(|&p| p >= 0.5 * worst).collect();
+    (marked, true)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::class::Role;
+    use bodies_of_revolution::Spheroid;
+    use stokes_body::dirichlet::Formulation;
+
+    fn kind(panels: usize, modes: usize) -> Kind {
+        let curve: Arc<dyn GeneratingCurve> = Arc::new(Spheroid::new(1.0, 0.6).unwrap());
+        Kind {
+            resolution: Arc::new(Resolution {
+                panels: Panels::equal_arcs(&*curve, panels).unwrap(),
+                order: ORDER,
+                modes,
+            }),
+            curve,
+            role: Role::Held(Formulation::CombinedField),
+        }
+    }
+
+    /// What is refined of four panels and eight modes.
+    fn refined_of(panels: [f64; 4], beyond: f64, allowed: f64) -> (usize, usize) {
+        let mut modes = vec![1e-3; 9];
+        modes.extend([beyond; 3]);
+        let largest = panels.iter().fold(beyond, |most, &p| most.max(p));
+        let miss = Miss {
+            largest,
+            panels: panels.to_vec(),
+            modes,
+        };
+        let finer = &refined(&[kind(4, 8)], &[miss], |_| allowed)[0].resolution;
+        (finer.panels.len(), finer.modes)
+    }
+
+    #[test]
+    fn what_is_missing_is_refined() {
+        // A panel that stands out; modes that are missing, which all panels feel; both; nothing but a little of that; nothing.
+        assert_eq!(refined_of([1e-3, 1e-6, 1e-6, 1e-6], 1e-9, 1e-5), (5, 8));
+        assert_eq!(refined_of([3e-3, 2e-3, 3e-3, 1e-3], 1e-3, 1e-5), (4, 12));
+        assert_eq!(refined_of([3e-2, 2e-3, 3e-3, 1e-3], 1e-3, 1e-5), (5, 12));
+        assert_eq!(refined_of([2e-6; 4], 2e-6, 1.9e-6), (4, 12));
+        assert_eq!(refined_of([2e-6; 4], 2e-6, 2.1e-6), (4, 8));
+    }
+}

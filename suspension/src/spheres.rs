@@ -1,0 +1,102 @@
+//! Spheres look the same from all sides: the axis of their modes may point anywhere, and best at the nearest neighbour. What gathers in a gap is then
+//! about the axis, where panels resolve it and a few modes do.
+
+use nalgebra::{Unit, Vector3};
+
+use super::resolution::are_coaxial;
+use super::suspension::Body;
+use bodies_of_revolution::Frame;
+use bodies_of_revolution::Gap;
+use bodies_of_revolution::GeneratingCurve;
+
+/// Relative differences of radii, and of directions, that are rounding.
+const ROUNDING: f64 = 1e-14;
+/// The sine of the angle up to which the nearest point is on the line of centres: it is known no better.
+const ON_LINE: f64 = 1e-6;
+
+/// The bodies with the axes of spheres towards the nearest neighbour; those with a slip stay, for it is given in their frame.
+pub(crate) fn facing_neighbours<'a>(bodies: &[Body<'a>], gaps: &[Gap]) -> Vec<Body<'a>> {
+    let mut facing = bodies.to_vec();
+    if are_coaxial(bodies) {
+        return facing;
+    }
+    for (index, body) in facing.iter_mut().enumerate() {
+        if body.slip.is_some() || !is_sphere(&*body.curve) {
+            continue;
+        }
+        let mine = gaps.iter().filter(|gap| gap.bodies.contains(&index));
+        if let Some(gap) = mine.min_by(|a, b| a.distance.total_cmp(&b.distance)) {
+            let axis = direction(bodies, gap, index);
+            // An axis that is right already keeps bodies coaxial to the last digit.
+            if axis.cross(&body.frame.axis()).norm() > ROUNDING {
+                body.frame = Frame::along(body.frame.center(), axis).scaled(body.frame.scale());
+            }
+        }
+    }
+    facing
+}
+
+/// From a body's centre to the point nearest to its neighbour.
+fn direction(bodies: &[Body<'_>], gap: &Gap, index: usize) -> Unit<Vector3<f64>> {
+    let side = usize::from(gap.bodies[1] == index);
+    let center = bodies[index].frame.center();
+    let between = Unit::new_normalize(bodies[gap.bodies[1 - side]].frame.center() - center);
+    let nearest = Unit::new_normalize(gap.points[side] - center);
+    if between.cross(&nearest).norm() < ON_LINE {
+        between
+    } else {
+        nearest
+    }
+}
+
+fn is_sphere(curve: &dyn GeneratingCurve) -> bool {
+    let ends = curve.breakpoints();
+    let (first, last) = (ends[0], ends[ends.len() - 1]);
+    let radius = |k: u32| {
+        let point = curve.point(first + (last - first) * f64::from(k) / 16.0);
+        point.r.hypot(point.z)
+    };
+    let of_pole = radius(0);
+    (1..=16).all(|k| (radius(k) - of_pole).abs() <= ROUNDING * of_pole)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use nalgebra::Point3;
+
+    use super::*;
+    use crate::suspension::Suspension;
+    use bodies_of_revolution::Spheroid;
+    use stokes_body::progress::Silent;
+
+    #[test]
+    fn axes_of_spheres_are_free() {
+        let shapes = [[1.0, 1.0], [0.7, 0.7], [1.0, 0.5]].map(|[along, across]| {
+            Arc::new(Spheroid::new(along, across).unwrap()) as Arc<dyn GeneratingCurve>
+        });
+        assert_eq!(
+            shapes.each_ref().map(|s| is_sphere(&**s)),
+            [true, true, false]
+        );
+        let axis = Unit::new_normalize(Vector3::new(0.3, -0.5, 0.2));
+        let at = |shape: usize, distance: f64| {
+            let center = Point3::origin() + distance * Vector3::new(2.0, 1.0, -2.0) / 3.0;
+            Body::new(shapes[shape].clone(), Frame::along(center, axis))
+        };
+        let gaps =
+            |bodies: &[Body<'_>]| Suspension::new(bodies.to_vec()).gaps(1.0, &Silent).unwrap();
+        let pair = [at(0, 0.0), at(1, 1.8)];
+        assert!(!are_coaxial(&pair));
+        let turned = facing_neighbours(&pair, &gaps(&pair));
+        assert!(are_coaxial(&turned));
+        // The rod stays as it is, and so does a sphere that is told how to slip.
+        let mut mixed = [at(2, 0.0), at(1, 2.0), at(0, -2.5)];
+        let slip = |x: Vector3<f64>| x.cross(&Vector3::z());
+        mixed[2].slip = Some(&slip);
+        let turned = facing_neighbours(&mixed, &gaps(&mixed));
+        let stays = |i: usize| turned[i].frame == mixed[i].frame;
+        assert_eq!([stays(0), stays(1), stays(2)], [true, false, true]);
+    }
+}

@@ -140,7 +140,7 @@ impl DirichletSolver {
     }
 
     /// The flow of a density, for viscosity 1.
-    pub fn flow(&self, density: &SurfaceModes) -> Flow<'_> {
+    pub fn flow(&self, density: &SurfaceModes) -> Flow {
         let side = match self.formulation {
             Formulation::InteriorDoubleLayer => Side::Interior,
             _ => Side::Exterior,

@@ -54,6 +54,12 @@ impl Node {
     }
 }
 
+impl From<&Discretization> for Arc<Discretization> {
+    fn from(of: &Discretization) -> Self {
+        Self::new(of.clone())
+    }
+}
+
 impl Discretization {
     /// `order` nodes on each of the panels.
     ///

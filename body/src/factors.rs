@@ -74,6 +74,21 @@ pub fn solve_transpose(packed: &[f64], permutation: &Permutation, columns: MatMu
     );
 }
 
+/// Solves with the matrix that was factored.
+fn solve_plain(packed: &[f64], permutation: &Permutation, columns: MatMut<'_, f64>) {
+    let n = permutation.forward.len();
+    let packed = MatRef::from_column_major_slice(packed, n, n);
+    let scratch = solve::solve_in_place_scratch::<usize, f64>(n, columns.ncols(), Par::Seq);
+    solve::solve_in_place(
+        packed,
+        packed,
+        PermRef::new_checked(&permutation.forward, &permutation.backward, n),
+        columns,
+        Par::Seq,
+        MemStack::new(&mut MemBuffer::new(scratch)),
+    );
+}
+
 impl ModalFactors {
     /// Assembles and factors matrices; `assemble` is given what to call after each target node.
     ///
@@ -166,6 +181,15 @@ impl ModalFactors {
         // The factors are the transposed matrix's.
         let packed = &self.packed.as_slice()[n * size..][..size];
         solve_transpose(packed, &self.permutations[n], columns);
+    }
+
+    /// Solves in place with the transposes of the matrices, for columns of mode `n` that are scaled by the roots of
+    /// the weights: what a linear functional of the density is as one of the boundary values.
+    pub fn solve_transposed_scaled(&self, n: usize, columns: MatMut<'_, f64>) {
+        let size = self.unknowns * self.unknowns;
+        // The factors are the transposed matrix's.
+        let packed = &self.packed.as_slice()[n * size..][..size];
+        solve_plain(packed, &self.permutations[n], columns);
     }
 
     fn scale(&self, columns: &mut [f64], by: impl Fn(f64, f64) -> f64) {

@@ -6,7 +6,7 @@
 //! than [`ON_SURFACE`].
 
 use std::f64::consts::PI;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 use panel_quadrature::QuadratureError;
@@ -26,15 +26,29 @@ use bodies_of_revolution::Meridian;
 use bodies_of_revolution::curve::ON_SURFACE;
 
 /// The flow of densities on a body, for viscosity 1, in the body's frame.
+///
+/// What an evaluation needs of the densities is made at the first one and kept: later ones cost the evaluation alone.
 #[derive(Debug)]
-pub struct Flow<'a> {
-    discretization: &'a Discretization,
+pub struct Flow {
+    discretization: Arc<Discretization>,
     layers: Layers,
     side: Side,
     densities: OnceLock<Densities>,
     far: OnceLock<FarFlow>,
     close: OnceLock<CloseFlow>,
 }
+
+/// The stress of a flow on the surface, for viscosity 1.
+#[derive(Clone, Debug)]
+pub struct SurfaceStress {
+    /// The traction, a force per area.
+    pub traction: SurfaceModes,
+    /// The vector field $p\, e_z$: its axial component is the pressure, whose modes behave like those of an axial component.
+    pub pressure_along_axis: SurfaceModes,
+}
+
+/// The component of a surface field along the axis.
+pub const AXIAL: usize = 2;
 
 /// A side of the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,11 +87,11 @@ const BESIDE: f64 = 0.03;
 /// Distance from the surface, in body sizes, at which the limits are taken.
 const LIMIT: f64 = 1e-14;
 
-impl<'a> Flow<'a> {
+impl Flow {
     /// The flow of densities on the nodes of `discretization`; on the surface, the limit from outside.
-    pub fn new(discretization: &'a Discretization, layers: Layers) -> Self {
+    pub fn new(discretization: impl Into<Arc<Discretization>>, layers: Layers) -> Self {
         Self {
-            discretization,
+            discretization: discretization.into(),
             layers,
             side: Side::Exterior,
             densities: OnceLock::new(),
@@ -113,16 +127,35 @@ impl<'a> Flow<'a> {
         self.evaluate::<true>(targets, tolerance)
     }
 
-    /// The modes of the traction $(-p I + \nabla u + (\nabla u)^\mathsf{T}) \nu$ on one side of the surface, with the normal
-    /// $\nu$ out of the body.
+    /// Panels and nodes.
+    pub fn discretization(&self) -> &Arc<Discretization> {
+        &self.discretization
+    }
+
+    /// The densities.
+    pub fn layers(&self) -> &Layers {
+        &self.layers
+    }
+
+    /// The modes of the traction $(-p I + \nabla u + (\nabla u)^\mathsf{T}) \nu$ on one side of the surface, with the
+    /// normal $\nu$ out of the body.
     ///
-    /// The traction of a double layer is hypersingular: its finite part is the limit of what integration by parts leaves of it off the
-    /// surface, where only integrable kernels of the density's tangential derivatives stand (`kernel::close`).
+    /// The traction of a double layer is hypersingular: its finite part is the limit of what integration by parts
+    /// leaves of it off the surface, where only integrable kernels of the density's tangential derivatives stand
+    /// (`kernel::close`).
     ///
     /// # Errors
     /// If a quadrature rule is missing.
     pub fn traction(&self, side: Side) -> Result<SurfaceModes, QuadratureError> {
-        let discretization = self.discretization;
+        Ok(self.surface_stress(side)?.traction)
+    }
+
+    /// Traction and pressure on one side of the surface.
+    ///
+    /// # Errors
+    /// If a quadrature rule is missing.
+    pub fn surface_stress(&self, side: Side) -> Result<SurfaceStress, QuadratureError> {
+        let discretization = &*self.discretization;
         let (close, densities) = (self.close()?, self.densities());
         let nodes = discretization.nodes();
         let panels: Vec<usize> = (0..discretization.panels().len()).collect();
@@ -140,7 +173,8 @@ impl<'a> Flow<'a> {
                 )
             })
             .collect::<Result<_, QuadratureError>>()?;
-        let mut traction = SurfaceModes::zero(densities.modes() - 1, nodes.len());
+        let zero = || SurfaceModes::zero(densities.modes() - 1, nodes.len());
+        let (mut traction, mut pressures) = (zero(), zero());
         for (k, (node, fields)) in nodes.iter().zip(&rings).enumerate() {
             for (place, fields) in fields.chunks(FIELDS).enumerate() {
                 let (pressure, gradient) = (fields[3], Matrix3::from_row_slice(&fields[4..]));
@@ -149,9 +183,13 @@ impl<'a> Flow<'a> {
                 for j in 0..3 {
                     traction.component_mut(place / 2, place % 2, j)[k] = of_mode[j];
                 }
+                pressures.component_mut(place / 2, place % 2, AXIAL)[k] = pressure;
             }
         }
-        Ok(traction)
+        Ok(SurfaceStress {
+            traction,
+            pressure_along_axis: pressures,
+        })
     }
 
     /// What the points of [`for_each_point`](Self::for_each_point) get wrong near the surface: for every target for which that is more than `tolerance`
@@ -188,7 +226,7 @@ impl<'a> Flow<'a> {
     pub fn correction_reach(&self, tolerance: f64) -> Result<f64, FlowError> {
         let size = self.discretization.size();
         let separation = self.far()?.separation(tolerance);
-        Ok(size + separation.reach(self.discretization, size))
+        Ok(size + separation.reach(&self.discretization, size))
     }
 
     /// The densities as points, times their shares of the surface.
@@ -216,7 +254,7 @@ impl<'a> Flow<'a> {
 
     fn densities(&self) -> &Densities {
         self.densities
-            .get_or_init(|| Densities::new(self.discretization, &self.layers))
+            .get_or_init(|| Densities::new(&self.discretization, &self.layers))
     }
 
     fn close(&self) -> Result<&CloseFlow, QuadratureError> {
@@ -231,7 +269,7 @@ impl<'a> Flow<'a> {
         if let Some(far) = self.far.get() {
             return Ok(far);
         }
-        let far = FarFlow::new(self.discretization, self.densities())?;
+        let far = FarFlow::new(&self.discretization, self.densities())?;
         Ok(self.far.get_or_init(|| far))
     }
 
@@ -269,7 +307,7 @@ impl<'a> Flow<'a> {
         let panels = 0..self.discretization.panels().len();
         let is_far = |target: &Point3<f64>| {
             let target = Meridian::of(target);
-            (panels.clone()).all(|panel| separation.is_kept(self.discretization, target, panel))
+            (panels.clone()).all(|panel| separation.is_kept(&self.discretization, target, panel))
         };
         targets.par_iter().map(is_far).collect()
     }
@@ -321,7 +359,7 @@ impl<'a> Flow<'a> {
         rest: Rest,
         buffers: &mut close::Buffers,
     ) -> Result<Vec<(usize, FlowGradientAt)>, FlowError> {
-        let (discretization, densities) = (self.discretization, self.densities());
+        let (discretization, densities) = (&*self.discretization, self.densities());
         let point = Meridian::of(&targets[ring[0]]);
         let sight = self.sight(point);
         let count = discretization.panels().len();
@@ -366,13 +404,13 @@ impl<'a> Flow<'a> {
 
     /// The point seen from the curve; if it is on the surface, a point on the side of the limit instead.
     fn sight(&self, point: Meridian) -> Sight {
-        let sight = close::sight(self.discretization, point);
+        let sight = close::sight(&self.discretization, point);
         let distance = sight.gap.r.hypot(sight.gap.z);
         if distance > ON_SURFACE * self.discretization.size() {
             return sight;
         }
         let foot = Node::new(&**self.discretization.curve(), sight.s, 0.0);
-        limit(self.discretization, sight, foot.normal, self.side)
+        limit(&self.discretization, sight, foot.normal, self.side)
     }
 }
 

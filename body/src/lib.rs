@@ -15,20 +15,18 @@
 //! | [`layers`] | the layer potentials that make up a flow |
 //! | [`flow`] | velocity, pressure and stress at any point |
 //! | [`linear_flow`] | undisturbed flows |
-//! | [`body_flow`] | the whole flow, as it was solved for |
-//! | [`problem`] | exterior problems, answered with an estimate of the error |
+//! | [`resolution`] | how finely a body is discretised |
 //! | [`resistance`] | resistance and mobility matrices |
 //! | `rigid` | rigid motions of the surface, force and torque of a density |
 //! | [`shell`] | the projection onto rigid motions |
-//! | [`slip`] | surface velocities of swimmers |
 //! | [`stresslet`] | the stresslet |
 //! | [`progress`] | how a long computation tells where it is |
 
-pub mod body_flow;
 mod close;
 mod densities;
 pub mod dirichlet;
 pub mod discretization;
+pub mod error;
 pub mod factors;
 pub mod far;
 pub mod flow;
@@ -42,13 +40,12 @@ mod near;
 #[cfg(test)]
 mod near_tests;
 mod point_sums;
-pub mod problem;
 pub mod progress;
 pub mod refinement;
 pub mod resistance;
+pub mod resolution;
 mod rigid;
 pub mod shell;
-pub mod slip;
 pub mod special;
 mod storage;
 pub mod stresslet;

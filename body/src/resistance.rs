@@ -22,10 +22,11 @@ use panel_quadrature::QuadratureError;
 use super::dirichlet::{DirichletSolver, Formulation};
 use super::discretization::Discretization;
 use super::mobility::MobilitySolver;
-use super::problem::{ProblemError, Resolution};
+use super::error::BodyError;
 use super::refinement::{
     EXTRA_ORDER, ORDER, Round, error_estimate, first_panels, refine, unresolved_panels,
 };
+use super::resolution::Resolution;
 use super::surface::SurfaceModes;
 use crate::progress::Progress;
 use bodies_of_revolution::{GeneratingCurve, Panels};
@@ -194,7 +195,7 @@ impl RigidBodyMatrices {
         panels: Panels,
         order: usize,
         progress: &dyn Progress,
-    ) -> Result<Self, ProblemError> {
+    ) -> Result<Self, BodyError> {
         Ok(checked(&curve, panels, order, progress)?.answer)
     }
 
@@ -207,7 +208,7 @@ impl RigidBodyMatrices {
         curve: Arc<dyn GeneratingCurve>,
         tolerance: f64,
         progress: &dyn Progress,
-    ) -> Result<Self, ProblemError> {
+    ) -> Result<Self, BodyError> {
         let first = first_panels(&*curve, tolerance)?;
         let affordable = |panels: usize| panels <= MOST_PANELS;
         let round = |panels| checked(&curve, panels, ORDER, progress);
@@ -238,7 +239,7 @@ fn checked(
     panels: Panels,
     order: usize,
     progress: &dyn Progress,
-) -> Result<Round<RigidBodyMatrices>, ProblemError> {
+) -> Result<Round<RigidBodyMatrices>, BodyError> {
     let discretization = Discretization::new(curve.clone(), panels.clone(), order)?;
     let finer = discretization.with_order(order + EXTRA_ORDER)?;
     let (resistance, mobility, densities) = solve(discretization.clone(), progress)?;

@@ -5,7 +5,8 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use nalgebra::Vector3;
+use bodies_of_revolution::Meridian;
+use nalgebra::{Point3, UnitQuaternion, Vector3};
 use num_complex::Complex64;
 use panel_quadrature::QuadratureError;
 use rayon::slice::ParallelSliceMut;
@@ -56,7 +57,7 @@ impl SurfaceModes {
     pub fn sample(
         discretization: &Discretization,
         n_max: usize,
-        f: impl Fn(Vector3<f64>) -> Vector3<f64>,
+        mut f: impl FnMut(Vector3<f64>) -> Vector3<f64>,
     ) -> Sampled {
         Self::sample_with_normal(discretization, n_max, |x, _| f(x))
     }
@@ -65,7 +66,7 @@ impl SurfaceModes {
     pub fn sample_with_normal(
         discretization: &Discretization,
         n_max: usize,
-        f: impl Fn(Vector3<f64>, Vector3<f64>) -> Vector3<f64>,
+        mut f: impl FnMut(Vector3<f64>, Vector3<f64>) -> Vector3<f64>,
     ) -> Sampled {
         let nodes = discretization.nodes();
         let mut largest = 0.0f64;
@@ -210,6 +211,57 @@ impl SurfaceModes {
             }
         }
         Ok(resampled)
+    }
+
+    /// The field in a frame whose axes are turned by `rotation`, on the nodes of a sphere; its vectors turn along.
+    ///
+    /// With $q$ the rotation it is $q^{-1} f(q x)$, interpolated along the curve: exact to what nodes and modes resolve.
+    ///
+    /// # Errors
+    /// If the nodes of a panel cannot be interpolated.
+    pub fn on_turned_sphere(
+        &self,
+        discretization: &Discretization,
+        rotation: &UnitQuaternion<f64>,
+    ) -> Result<Self, QuadratureError> {
+        let mut failed = None;
+        let turned = |x: Vector3<f64>| {
+            let value = self.at_point(discretization, (rotation * x).into());
+            rotation.inverse() * value.unwrap_or_else(|error| {
+                failed = Some(error);
+                Vector3::zeros()
+            })
+        };
+        let turned = Self::sample(discretization, self.modes - 1, turned).modes;
+        failed.map_or(Ok(turned), Err)
+    }
+
+    /// The field at the point of the surface nearest to `x`, Cartesian.
+    fn at_point(
+        &self,
+        discretization: &Discretization,
+        x: Point3<f64>,
+    ) -> Result<Vector3<f64>, QuadratureError> {
+        let s = super::close::sight(discretization, Meridian::of(&x)).s;
+        let panels = discretization.panels().as_slice();
+        let after = panels.partition_point(|panel| panel.end < s);
+        let index = after.min(panels.len() - 1);
+        let panel = &panels[index];
+        let order = discretization.order();
+        let mut row = vec![0.0; order];
+        let t = (s - panel.start) / (0.5 * panel.length()) - 1.0;
+        (discretization.basis()).interpolation_row(t.clamp(-1.0, 1.0), &mut row)?;
+        let theta = x.y.atan2(x.x);
+        let mut value = Vector3::zeros();
+        for (i, l) in row.iter().enumerate() {
+            value += *l * Vector3::from(self.at(index * order + i, theta));
+        }
+        let (sin, cos) = theta.sin_cos();
+        Ok(Vector3::new(
+            value.x * cos - value.y * sin,
+            value.x * sin + value.y * cos,
+            value.z,
+        ))
     }
 
     /// The field plus another one, on the same nodes, times a number.

@@ -1,19 +1,23 @@
-//! Bodies that are alike: their shape, their resolution, and whether they are held or free. What that takes to solve is made once.
+//! Classes of bodies that are alike in shape, resolution and equation. What it takes to solve for one is made once.
 
-use std::sync::Arc;
+use std::time::Instant;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use panel_quadrature::QuadratureError;
 use rayon::prelude::*;
 
 use super::coarse::RigidTractions;
+use super::constraint::RigidResponse;
+use super::error::SuspensionError;
+use super::finer::FinerSurface;
 use super::tables::Tables;
-use bodies_of_revolution::GeneratingCurve;
+use bodies_of_revolution::Shape;
 use stokes_body::dirichlet::{DirichletSolver, Formulation};
 use stokes_body::discretization::Discretization;
 use stokes_body::factors::{ModalFactors, Seconds};
 use stokes_body::layers::LayerWeights;
 use stokes_body::mobility::MobilitySolver;
-use stokes_body::problem::Resolution;
+use stokes_body::resolution::Resolution;
 use stokes_body::progress::{Progress, Silent};
 use stokes_body::surface_grid::azimuths;
 
@@ -29,14 +33,14 @@ pub(crate) enum Role {
 /// What tells bodies apart.
 #[derive(Clone, Debug)]
 pub(crate) struct Kind {
-    pub curve: Arc<dyn GeneratingCurve>,
+    pub shape: Shape,
     pub resolution: Arc<Resolution>,
     pub role: Role,
 }
 
 impl PartialEq for Kind {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.curve, &other.curve)
+        Arc::ptr_eq(&self.shape, &other.shape)
             && self.role == other.role
             && (Arc::ptr_eq(&self.resolution, &other.resolution)
                 || self.resolution == other.resolution)
@@ -46,7 +50,7 @@ impl PartialEq for Kind {
 impl Kind {
     pub fn discretization(&self) -> Result<Discretization, QuadratureError> {
         let Resolution { panels, order, .. } = &*self.resolution;
-        Discretization::new(self.curve.clone(), panels.clone(), *order)
+        Discretization::new(self.shape.clone(), panels.clone(), *order)
     }
 
     /// Points of one body.
@@ -76,13 +80,16 @@ impl Kind {
 pub(crate) struct Class {
     pub kind: Kind,
     pub tables: Arc<Tables>,
-    solver: Solver,
-    /// Of held bodies that move rigidly in the coarse space.
-    pub tractions: Option<Arc<RigidTractions>>,
+    solver: BodySolver,
+    /// Made when they are first wanted: few problems need all.
+    tractions: OnceLock<Arc<RigidTractions>>,
+    response: OnceLock<Arc<RigidResponse>>,
+    single_layer: OnceLock<Arc<Tables>>,
+    finer: Mutex<Vec<Arc<FinerSurface>>>,
 }
 
 #[derive(Debug)]
-enum Solver {
+enum BodySolver {
     Held(DirichletSolver),
     Free(MobilitySolver),
 }
@@ -90,53 +97,99 @@ enum Solver {
 impl Class {
     fn new(kind: Kind) -> Result<Self, QuadratureError> {
         let discretization = kind.discretization()?;
-        let modes = kind.resolution.modes;
+        let modes = kind.resolution.modes.max(1);
         let (solver, weights) = match kind.role {
             Role::Held(formulation) => {
-                let solver =
-                    DirichletSolver::new(discretization.clone(), formulation, modes, &Silent)?;
+                let of = discretization.clone();
+                let solver = DirichletSolver::new(of, formulation, modes, &Silent)?;
                 let weights = solver.weights();
-                (Solver::Held(solver), weights)
+                (BodySolver::Held(solver), weights)
             }
-            Role::Free => (
-                Solver::Free(MobilitySolver::new(discretization.clone(), modes, &Silent)?),
-                LayerWeights::DOUBLE,
-            ),
-        };
-        let tractions = match kind.role {
-            Role::Held(_) => Some(Arc::new(RigidTractions::new(&discretization)?)),
-            Role::Free => None,
+            Role::Free => {
+                let solver = MobilitySolver::new(discretization.clone(), modes, &Silent)?;
+                (BodySolver::Free(solver), LayerWeights::DOUBLE)
+            }
         };
         Ok(Self {
-            tables: Arc::new(Tables::new(discretization, modes.max(1), weights)?),
+            tables: Arc::new(Tables::new(discretization, modes, weights)),
             kind,
             solver,
-            tractions,
+            tractions: OnceLock::new(),
+            response: OnceLock::new(),
+            single_layer: OnceLock::new(),
+            finer: Mutex::default(),
         })
     }
 
     /// The factors of the equation.
     pub fn factors(&self) -> &ModalFactors {
         match &self.solver {
-            Solver::Held(solver) => solver.factors(),
-            Solver::Free(solver) => solver.factors(),
+            BodySolver::Held(solver) => solver.factors(),
+            BodySolver::Free(solver) => solver.factors(),
         }
     }
 
     /// How long its matrices took.
     fn seconds(&self) -> Seconds {
         match &self.solver {
-            Solver::Held(solver) => solver.seconds(),
-            Solver::Free(solver) => solver.seconds(),
+            BodySolver::Held(solver) => solver.seconds(),
+            BodySolver::Free(solver) => solver.seconds(),
         }
     }
 
-    /// How free bodies are solved for; nothing for held ones.
+    /// The solver of free bodies; none for held ones.
     pub fn free(&self) -> Option<&MobilitySolver> {
         match &self.solver {
-            Solver::Held(_) => None,
-            Solver::Free(solver) => Some(solver),
+            BodySolver::Held(_) => None,
+            BodySolver::Free(solver) => Some(solver),
         }
+    }
+
+    /// The tractions of the rigid motions of held bodies; none for free ones.
+    pub fn tractions(&self) -> Result<Option<Arc<RigidTractions>>, QuadratureError> {
+        if self.free().is_some() {
+            return Ok(None);
+        }
+        if let Some(made) = self.tractions.get() {
+            return Ok(Some(made.clone()));
+        }
+        let tractions = Arc::new(RigidTractions::new(&self.tables.discretization)?);
+        Ok(Some(self.tractions.get_or_init(|| tractions).clone()))
+    }
+
+    /// The rigid motions of held bodies and what they take; none for free ones.
+    pub fn response(&self) -> Option<Arc<RigidResponse>> {
+        let BodySolver::Held(solver) = &self.solver else {
+            return None;
+        };
+        let make = || Arc::new(RigidResponse::new(solver));
+        Some(self.response.get_or_init(make).clone())
+    }
+
+    /// The tables of single layers on the same points: those of free bodies carry force and torque.
+    pub fn single_layer_tables(&self) -> &Arc<Tables> {
+        let make = || Arc::new(self.new_single_layer_tables());
+        self.single_layer.get_or_init(make)
+    }
+
+    /// The same, not kept.
+    pub fn new_single_layer_tables(&self) -> Tables {
+        let tables = &self.tables;
+        Tables::new(tables.discretization.clone(), tables.n_max, LayerWeights::SINGLE)
+    }
+
+    /// The finer surface with modes up to `n_max`, `kept` for the next time.
+    pub fn finer(&self, n_max: usize, kept: bool) -> Result<Arc<FinerSurface>, QuadratureError> {
+        let mut made = self.finer.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(finer) = made.iter().find(|finer| finer.n_max == n_max) {
+            return Ok(finer.clone());
+        }
+        let is_free = self.free().is_some();
+        let finer = Arc::new(FinerSurface::new(&self.tables, n_max, is_free)?);
+        if kept {
+            made.push(finer.clone());
+        }
+        Ok(finer)
     }
 }
 
@@ -146,45 +199,65 @@ pub(crate) struct Classes {
     classes: Vec<Arc<Class>>,
     /// Each body's class.
     of: Vec<usize>,
+    /// What was assembled and factored for these bodies.
+    seconds: Seconds,
 }
 
 impl Classes {
-    /// Makes what the bodies need and `before` does not have.
+    /// Makes what the bodies need and `known` does not have.
     pub fn new(
         kinds: &[Kind],
-        before: &Self,
+        known: &[Arc<Class>],
         progress: &dyn Progress,
-    ) -> Result<Self, QuadratureError> {
+    ) -> Result<Self, SuspensionError> {
         let mut distinct: Vec<&Kind> = Vec::new();
         let of = kinds.iter().map(|kind| {
-            let known = distinct.iter().position(|other| *other == kind);
-            known.unwrap_or_else(|| {
+            let before = distinct.iter().position(|other| *other == kind);
+            before.unwrap_or_else(|| {
                 distinct.push(kind);
                 distinct.len() - 1
             })
         });
         let of: Vec<usize> = of.collect();
+        let start = Instant::now();
         progress.begin("factoring", distinct.len());
         let make = |kind: &&Kind| {
-            let known = before.classes.iter().find(|class| class.kind == **kind);
+            let known = known.iter().find(|class| class.kind == **kind);
+            if progress.is_cancelled() {
+                return Err(SuspensionError::Interrupted);
+            }
             let class = match known {
-                Some(class) => Ok(class.clone()),
-                None => Class::new((*kind).clone()).map(Arc::new),
+                Some(class) => (class.clone(), Seconds::default()),
+                None => {
+                    let class = Arc::new(Class::new((*kind).clone())?);
+                    let seconds = class.seconds();
+                    (class, seconds)
+                }
             };
             progress.advance(1);
-            class
+            Ok(class)
         };
-        let classes = distinct.par_iter().map(make).collect::<Result<_, _>>()?;
-        Ok(Self { classes, of })
+        let made: Vec<(Arc<Class>, Seconds)> =
+            (distinct.par_iter().map(make)).collect::<Result<_, SuspensionError>>()?;
+        let spent = start.elapsed().as_secs_f64();
+        // Classes are made side by side: the wall clock is shared out as the work was.
+        let (assemble, factor) = made.iter().fold((0.0, 0.0), |(a, f), (_, of)| {
+            (a + of.assemble, f + of.factor)
+        });
+        let part = factor / (assemble + factor).max(f64::MIN_POSITIVE);
+        Ok(Self {
+            classes: made.into_iter().map(|(class, _)| class).collect(),
+            of,
+            seconds: Seconds {
+                assemble: (1.0 - part) * spent,
+                factor: part * spent,
+            },
+        })
     }
 
-    /// Which part of the time that the matrices took went into their factors.
-    pub fn share_of_factoring(&self) -> f64 {
-        let seconds = self.classes.iter().map(|class| class.seconds());
-        let [assemble, factor] = seconds.fold([0.0, f64::MIN_POSITIVE], |[a, f], of| {
-            [a + of.assemble, f + of.factor]
-        });
-        factor / (assemble + factor)
+    /// The wall clock that assembling and factoring took.
+    pub fn spent(&self) -> Seconds {
+        self.seconds
     }
 
     /// The class of a body.
@@ -197,13 +270,13 @@ impl Classes {
         self.of[body]
     }
 
-    /// Classes.
-    pub fn len(&self) -> usize {
-        self.classes.len()
+    /// Every class.
+    pub fn all(&self) -> &[Arc<Class>] {
+        &self.classes
     }
 
-    /// Every class.
-    pub fn iter(&self) -> impl Iterator<Item = &Arc<Class>> {
-        self.classes.iter()
+    /// The kind of every body.
+    pub fn kinds(&self) -> Vec<Kind> {
+        self.of.iter().map(|&class| self.classes[class].kind.clone()).collect()
     }
 }

@@ -20,8 +20,9 @@ use panel_quadrature::{GaussLegendre, QuadratureError};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::tables::{Layout, Member};
-use bodies_of_revolution::{RigidMotion, Wrench};
+use super::constraint::{Constraint, elementary, six_of_wrench};
+use super::layout::Layout;
+use super::tables::Member;
 use f64_lanes::{Lanes, padded};
 use stokes_body::dirichlet::{DirichletSolver, Formulation};
 use stokes_body::discretization::{Discretization, Node};
@@ -49,24 +50,6 @@ pub(crate) struct RigidTractions {
 /// At one point, the forces of the six motions.
 type SixForces = [Vector3<f64>; 6];
 
-fn elementary(k: usize) -> RigidMotion {
-    let mut motion = RigidMotion::rest();
-    if k < 3 {
-        motion.velocity[k] = 1.0;
-    } else {
-        motion.angular_velocity[k - 3] = 1.0;
-    }
-    motion
-}
-
-fn six(wrench: Wrench) -> Vector6<f64> {
-    let Wrench {
-        force: f,
-        torque: t,
-    } = wrench;
-    Vector6::new(f.x, f.y, f.z, t.x, t.y, t.z)
-}
-
 impl RigidTractions {
     /// The tractions of a shape.
     ///
@@ -81,7 +64,7 @@ impl RigidTractions {
         let tractions: Vec<SurfaceModes> = motions.iter().map(|on| solver.solve(on)).collect();
         let columns: Vec<Vector6<f64>> = tractions
             .iter()
-            .map(|traction| six(solver.wrench(traction)))
+            .map(|traction| six_of_wrench(solver.wrench(traction)))
             .collect();
         let resistance = Matrix6::from_columns(&columns);
         let mobility = resistance.try_inverse().unwrap_or_else(Matrix6::zeros);
@@ -216,8 +199,13 @@ impl InLab {
 }
 
 impl Coarse {
-    /// Factors $G$ for bodies with tractions; those without are free.
-    pub fn new(members: &[Member], tractions: Vec<Option<Arc<RigidTractions>>>) -> Option<Self> {
+    /// Factors $G$ for bodies with tractions; those without are free. A body that is free in some directions feels the
+    /// others through its projection $\Pi$, which on motions is $1 - HR$.
+    pub fn new(
+        members: &[Member],
+        tractions: Vec<Option<Arc<RigidTractions>>>,
+        constraints: &[Option<Constraint>],
+    ) -> Option<Self> {
         let bodies: Vec<(usize, Arc<RigidTractions>)> = tractions
             .into_iter()
             .enumerate()
@@ -236,12 +224,16 @@ impl Coarse {
         rows.par_chunks_mut(6 * size)
             .enumerate()
             .for_each(|(i, rows)| {
-                let mobility = &bodies[i].1.mobility;
+                let (body, tractions) = &bodies[i];
+                let felt = match &constraints[*body] {
+                    Some(constraint) => constraint.on_motions() * tractions.mobility,
+                    None => tractions.mobility,
+                };
                 for (j, other) in in_lab.iter().enumerate() {
                     let block = if i == j {
                         Matrix6::identity()
                     } else {
-                        other.scale * mobility * energy(&in_lab[i], other)
+                        other.scale * felt * energy(&in_lab[i], other)
                     };
                     for (k, row) in rows.chunks_mut(size).enumerate() {
                         for l in 0..6 {

@@ -56,12 +56,26 @@ pub enum SuspensionError {
         /// How many there should be.
         bodies: usize,
     },
-    /// The force or torque on a body is not finite.
-    #[error("force and torque on body {body} must be finite, got {value}")]
-    Wrench {
+    /// A body that there is not.
+    #[error("there is no body {body}: expected one of {bodies}, counted from 0")]
+    NoBody {
+        /// What was asked for.
+        body: usize,
+        /// How many there are.
+        bodies: usize,
+    },
+    /// A viscosity that is not one.
+    #[error("a viscosity of {0}: expected a positive number")]
+    Viscosity(f64),
+    /// The undisturbed flow is not finite.
+    #[error("velocity and gradient of the undisturbed flow must be finite")]
+    Background,
+    /// A number of what is known of a body's motion is not finite.
+    #[error("motion, force and torque of body {body} must be finite, got {value}")]
+    Motion {
         /// Which body.
         body: usize,
-        /// A component that is not.
+        /// The number that is not.
         value: f64,
     },
     /// The velocity imposed on a body is not finite.
@@ -85,7 +99,7 @@ pub enum SuspensionError {
     /// The iteration cannot be made.
     #[error("{0}")]
     Iteration(String),
-    /// Whoever waited has lost interest.
+    /// Cancelled by the caller.
     #[error("interrupted")]
     Interrupted,
     /// The flow cannot be evaluated.

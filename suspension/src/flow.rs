@@ -1,176 +1,274 @@
-//! The flow of many bodies at any points.
+//! The flow that was solved for, at any points, and its stress on the surfaces.
+//!
+//! The layers of all bodies are laid on points and summed, and what the points get wrong near a body is put right. For
+//! few points, and for a body alone, every body's flow is evaluated by itself instead: that loses no digits.
 
-use std::ops::Range;
+use std::sync::{Arc, OnceLock};
 
+use bodies_of_revolution::{Ball, Frame, Insides, Neighbours, RigidMotion, Shape, Wrench};
 use nalgebra::{Matrix3, Point3, Vector3};
 use rayon::prelude::*;
-use stokes_fmm::{Output, Points, Singularities, Strengths, Stresslets};
-
-use super::SuspensionError;
-use super::sums::{Operators, Sums};
-use bodies_of_revolution::Frame;
 use stokes_body::discretization::Discretization;
-use stokes_body::flow::{Flow, FlowError, Side, first_not_finite};
+use stokes_body::flow::{AXIAL, Flow as FlowOfBody, FlowError, Side, SurfaceStress, first_not_finite};
 use stokes_body::kernel::{FlowAt, FlowGradientAt};
-use stokes_body::layers::Layers;
 use stokes_body::linear_flow::{self, LinearFlow};
 use stokes_body::progress::{Progress, Silent};
 use stokes_body::surface::SurfaceModes;
+use stokes_fmm::{Output, Points, Singularities};
 
-/// One body's part in a flow, in its own frame and for viscosity 1.
-#[derive(Clone, Debug)]
-pub struct BodyLayers {
-    /// Where the body is.
+use super::error::SuspensionError;
+use super::points::{LayerPoints, strengths_in_lab};
+use super::sums::{Operators, Sums, are_few};
+
+/// One body's part in a flow.
+#[derive(Debug)]
+pub struct BodyFlow {
+    /// Where the body is. The axis of a sphere without slip may be another one than was given.
     pub frame: Frame,
-    /// Panels and nodes.
-    pub discretization: Discretization,
-    /// The densities, in the body's frame.
-    pub layers: Layers,
+    /// What the body adds to the undisturbed flow, in its frame and for viscosity 1.
+    pub disturbance: FlowOfBody,
+    /// Its rigid motion, in its frame.
+    pub motion: RigidMotion,
+    /// Its slip at the nodes, in its frame, if it has one.
+    pub slip: Option<SurfaceModes>,
+    /// Force and torque on the fluid, in its frame and for viscosity 1.
+    pub wrench: Wrench,
 }
 
-/// The flow that was solved for, in the laboratory and for viscosity 1: the undisturbed flow and the layers of all bodies.
+impl BodyFlow {
+    fn on(&self) -> &Discretization {
+        self.disturbance.discretization()
+    }
+
+    /// The velocity of the surface: rigid motion and slip; in the body's frame.
+    pub fn surface_velocity(&self) -> SurfaceModes {
+        let motion = SurfaceModes::of_motion(self.on(), &self.motion);
+        match &self.slip {
+            Some(slip) => motion.plus(1.0, slip),
+            None => motion,
+        }
+    }
+
+    /// Half the body's largest extent, in the laboratory.
+    pub fn size(&self) -> f64 {
+        self.frame.scale() * self.on().size()
+    }
+}
+
+/// Velocity, pressure, velocity gradient and stress at a point, in the laboratory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StressAt {
+    /// Velocity.
+    pub velocity: Vector3<f64>,
+    /// Pressure, vanishing at infinity.
+    pub pressure: f64,
+    /// Velocity gradient, $\partial u_i / \partial x_j$ in row $i$, column $j$.
+    pub gradient: Matrix3<f64>,
+    /// Stress $-p I + \mu (\nabla u + (\nabla u)^\mathsf{T})$.
+    pub stress: Matrix3<f64>,
+}
+
+/// One body's surface as points with what acts there, in the laboratory.
+///
+/// The sum of weights times a field is its integral over the surface: of the traction, minus the force that the body
+/// exerts on the fluid.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Surface {
+    /// The points.
+    pub points: Vec<Point3<f64>>,
+    /// Outward unit normals.
+    pub normals: Vec<Vector3<f64>>,
+    /// Every point's share of the area.
+    pub weights: Vec<f64>,
+    /// Velocity of the surface, and of the fluid there.
+    pub velocity: Vec<Vector3<f64>>,
+    /// Force per area that the fluid exerts on the body, of the whole flow.
+    pub traction: Vec<Vector3<f64>>,
+    /// Pressure of the fluid.
+    pub pressure: Vec<f64>,
+}
+
+/// The whole flow in the laboratory: the undisturbed flow, and what the layers of all bodies add to it.
+///
+/// A clone shares everything with its original, also what was made at an earlier evaluation.
 #[derive(Clone, Debug)]
-pub struct SuspensionFlow {
-    /// Every body's part.
-    pub bodies: Vec<BodyLayers>,
-    /// The undisturbed flow.
-    pub background: LinearFlow,
+pub struct Flow(Arc<Inner>);
+
+#[derive(Debug)]
+struct Inner {
+    bodies: Vec<BodyFlow>,
+    background: LinearFlow,
+    viscosity: f64,
+    largest_speed: f64,
+    tolerance: f64,
+    operators: Operators,
+    insides: OnceLock<Insides>,
+    points: OnceLock<LayerPoints>,
+    density: OnceLock<f64>,
+    stresses: Vec<OnceLock<SurfaceStress>>,
 }
 
-/// What a fast sum is asked for beyond the tolerance of the flow: its own is relative to the whole, and terms may cancel.
+/// What a fast sum is asked for beyond the tolerance of the flow: its own is relative to the whole, and terms may
+/// cancel.
 const MARGIN: f64 = 1e-2;
+/// The best tolerance of a fast sum.
+const FINEST_SUM: f64 = 1e-12;
+/// The best tolerance of a flow.
+const FINEST: f64 = 1e-15;
 /// Targets that are evaluated between two reports of progress.
 const CHUNK: usize = 1 << 16;
 /// Bodies whose tractions are found together.
 const BODIES: usize = 64;
-/// Half steps between the points of a ring and those at which the others' tractions are sampled: as far from them as can be.
+/// Half steps between the points of a ring and those at which the others' stress is sampled: as far from them as can be.
 const HALVES: usize = 1;
 
-impl SuspensionFlow {
-    /// Velocity and pressure at every target, to about `tolerance` relative to the densities; on a surface, the limits from outside. Targets inside
-    /// a body are not refused, and mean nothing.
-    ///
-    /// # Errors
-    /// [`FlowError::NotFinite`] for a target that is not a point.
-    pub fn at(
-        &self,
-        targets: &[Point3<f64>],
-        tolerance: f64,
-    ) -> Result<Vec<FlowAt>, SuspensionError> {
-        self.evaluate(targets, tolerance, &Silent)
+/// What a flow is made of.
+pub(crate) struct Parts {
+    pub bodies: Vec<BodyFlow>,
+    pub background: LinearFlow,
+    pub viscosity: f64,
+    /// The largest speed on the surfaces.
+    pub largest_speed: f64,
+    /// Tolerance where none is given, relative to that.
+    pub tolerance: f64,
+    pub operators: Operators,
+}
+
+impl Flow {
+    pub(crate) fn new(parts: Parts) -> Self {
+        Self(Arc::new(Inner {
+            stresses: parts.bodies.iter().map(|_| OnceLock::new()).collect(),
+            bodies: parts.bodies,
+            background: parts.background,
+            viscosity: parts.viscosity,
+            largest_speed: parts.largest_speed,
+            tolerance: parts.tolerance,
+            operators: parts.operators,
+            insides: OnceLock::new(),
+            points: OnceLock::new(),
+            density: OnceLock::new(),
+        }))
     }
 
-    /// The same, telling where it is.
-    pub fn evaluate(
+    /// Every body's part.
+    pub fn bodies(&self) -> &[BodyFlow] {
+        &self.0.bodies
+    }
+
+    /// The undisturbed flow.
+    pub fn background(&self) -> &LinearFlow {
+        &self.0.background
+    }
+
+    /// The viscosity.
+    pub fn viscosity(&self) -> f64 {
+        self.0.viscosity
+    }
+
+    /// The largest speed on the surfaces, of what is imposed and of motions that were found.
+    pub fn largest_speed(&self) -> f64 {
+        self.0.largest_speed
+    }
+
+    /// Velocity and pressure at any points, `None` inside a body; on a surface, the limits from outside. As well as the
+    /// tolerance of the answer makes sense.
+    ///
+    /// # Errors
+    /// If a point is not finite.
+    pub fn at(&self, points: &[Point3<f64>]) -> Result<Vec<Option<FlowAt>>, SuspensionError> {
+        self.at_with(points, self.0.tolerance, &Silent)
+    }
+
+    /// The same to a tolerance for the velocity, relative to the [largest speed](Self::largest_speed); tells `progress`
+    /// where it is.
+    ///
+    /// # Errors
+    /// If a point is not finite, or the caller cancels.
+    pub fn at_with(
         &self,
-        targets: &[Point3<f64>],
+        points: &[Point3<f64>],
         tolerance: f64,
         progress: &dyn Progress,
-    ) -> Result<Vec<FlowAt>, SuspensionError> {
-        let found = self.sum::<false>(targets, tolerance, progress)?;
-        Ok(found.into_iter().map(FlowAt::from).collect())
+    ) -> Result<Vec<Option<FlowAt>>, SuspensionError> {
+        let viscosity = self.0.viscosity;
+        let at = |at: FlowGradientAt| FlowAt {
+            velocity: at.velocity,
+            pressure: viscosity * at.pressure,
+        };
+        self.outside::<false, FlowAt>(points, tolerance, progress, at)
     }
 
-    /// The same with the velocity gradient, and so the stress.
+    /// Velocity, pressure, velocity gradient and stress at any points, `None` inside a body.
     ///
     /// # Errors
-    /// [`FlowError::NotFinite`] for a target that is not a point.
-    pub fn gradient_at(
-        &self,
-        targets: &[Point3<f64>],
-        tolerance: f64,
-    ) -> Result<Vec<FlowGradientAt>, SuspensionError> {
-        self.sum::<true>(targets, tolerance, &Silent)
+    /// If a point is not finite.
+    pub fn stress_at(&self, points: &[Point3<f64>]) -> Result<Vec<Option<StressAt>>, SuspensionError> {
+        self.stress_at_with(points, self.0.tolerance, &Silent)
     }
 
-    /// The traction $\\sigma\\nu$ of the fluid on the surfaces of some bodies, background included, with the normal $\\nu$ out of the body: forces per area of the
-    /// laboratory, as vectors in the body's frame.
-    ///
-    /// A body's own layers are taken mode by mode, what the others do on rings of points.
+    /// The same to a tolerance, as [`at_with`](Self::at_with).
     ///
     /// # Errors
-    /// If a quadrature rule is missing, or whoever waits has lost interest.
-    pub fn tractions(
+    /// If a point is not finite, or the caller cancels.
+    pub fn stress_at_with(
         &self,
-        bodies: &[usize],
+        points: &[Point3<f64>],
         tolerance: f64,
         progress: &dyn Progress,
-    ) -> Result<Vec<SurfaceModes>, SuspensionError> {
-        progress.begin("tractions", bodies.len());
-        let flows = self.flows();
-        let sources = Sources::new(self, &flows)?;
-        let mut tractions = Vec::with_capacity(bodies.len());
-        for some in bodies.chunks(BODIES) {
-            if progress.is_cancelled() {
-                return Err(SuspensionError::Interrupted);
-            }
-            tractions.extend(self.some_tractions(some, &flows, &sources, tolerance)?);
-            progress.advance(some.len());
-        }
-        Ok(tractions)
+    ) -> Result<Vec<Option<StressAt>>, SuspensionError> {
+        let viscosity = self.0.viscosity;
+        let at = |at: FlowGradientAt| StressAt {
+            velocity: at.velocity,
+            pressure: viscosity * at.pressure,
+            gradient: at.gradient,
+            stress: viscosity * at.stress(),
+        };
+        self.outside::<true, StressAt>(points, tolerance, progress, at)
     }
 
-    fn some_tractions(
+    fn outside<const GRADIENT: bool, T: Clone>(
         &self,
-        bodies: &[usize],
-        flows: &[Flow<'_>],
-        sources: &Sources,
+        points: &[Point3<f64>],
         tolerance: f64,
-    ) -> Result<Vec<SurfaceModes>, SuspensionError> {
-        let mut targets = Vec::new();
-        let mut own = Vec::with_capacity(bodies.len());
-        let mut left_out = vec![0..0; flows.len()];
-        for &body in bodies {
-            let BodyLayers {
-                frame,
-                discretization,
-                ..
-            } = &self.bodies[body];
-            let points = ring_points(discretization, flows[body].azimuths()?);
-            let first = targets.len();
-            targets.extend(points.iter().map(|&x| frame.point_to_lab(x)));
-            left_out[body] = first..targets.len();
-            own.push(points);
+        progress: &dyn Progress,
+        convert: impl Fn(FlowGradientAt) -> T,
+    ) -> Result<Vec<Option<T>>, SuspensionError> {
+        if let Some(index) = first_not_finite(points) {
+            return Err(FlowError::NotFinite { index }.into());
         }
-        let mut found = Vec::with_capacity(targets.len());
-        for some in targets.chunks(CHUNK) {
-            found.extend(sources.at::<true>(some, tolerance)?);
+        let insides = self.insides()?;
+        let is_outside = |&place: &usize| insides.body_at(points[place]).is_none();
+        let places: Vec<usize> = (0..points.len())
+            .into_par_iter()
+            .filter(is_outside)
+            .collect();
+        let targets: Vec<Point3<f64>> = places.iter().map(|&place| points[place]).collect();
+        let found = self.evaluate::<GRADIENT>(&targets, tolerance, progress)?;
+        let mut flow = vec![None; points.len()];
+        for (place, at) in places.into_iter().zip(found) {
+            flow[place] = Some(convert(at));
         }
-        self.correct::<true>(flows, &targets, tolerance, &left_out, &mut found)?;
-        let tractions = bodies.iter().zip(own).map(|(&body, points)| {
-            let BodyLayers {
-                frame,
-                discretization,
-                ..
-            } = &self.bodies[body];
-            let flow = &flows[body];
-            let mut of_own = flow.of_points(&points)?.into_iter();
-            let mut found = found[left_out[body].clone()].iter();
-            let of_others = |k: usize, [cos, sin]: [f64; 2]| {
-                let [across, along] = discretization.nodes()[k].normal;
-                let normal = Vector3::new(across * cos, across * sin, along);
-                let mut at = found.next().copied().unwrap_or_default();
-                at -= in_lab(frame, of_own.next().unwrap_or_default());
-                at.gradient += self.background.gradient;
-                frame.vector_to_body(at.stress() * frame.vector_to_lab(normal))
-            };
-            let samples = [flow.azimuths()?, HALVES];
-            let n_max = (flow.modes() - 1).max(linear_flow::LAST_MODE);
-            let nodes = discretization.nodes().len();
-            let of_others = SurfaceModes::of_samples(nodes, n_max, samples, of_others);
-            Ok(of_others.plus(1.0 / frame.scale(), &flow.traction(Side::Exterior)?))
-        });
-        tractions.collect()
+        Ok(flow)
     }
 
-    fn flows(&self) -> Vec<Flow<'_>> {
-        let flows = self.bodies.iter();
-        flows
-            .map(|body| Flow::new(&body.discretization, body.layers.clone()))
-            .collect()
+    /// Which body a point is in, for many points.
+    ///
+    /// # Errors
+    /// If a curve has no outline.
+    pub fn insides(&self) -> Result<&Insides, SuspensionError> {
+        let inner = &*self.0;
+        if let Some(insides) = inner.insides.get() {
+            return Ok(insides);
+        }
+        let bodies = inner.bodies.iter();
+        let placed = bodies.map(|body| (body.on().curve(), body.frame));
+        let insides =
+            Insides::new(placed).map_err(|(body, error)| SuspensionError::Curve { body, error })?;
+        Ok(inner.insides.get_or_init(|| insides))
     }
 
-    fn sum<const GRADIENT: bool>(
+    /// Velocity, pressure and, if asked for, gradient at points that are all in the fluid; for viscosity 1.
+    pub(crate) fn evaluate<const GRADIENT: bool>(
         &self,
         targets: &[Point3<f64>],
         tolerance: f64,
@@ -180,34 +278,20 @@ impl SuspensionFlow {
             return Err(FlowError::NotFinite { index }.into());
         }
         progress.begin("evaluating", targets.len());
-        let flows = self.flows();
-        let sources = Sources::new(self, &flows)?;
+        let tolerance = self.of_densities(tolerance);
         let mut evaluated = Vec::with_capacity(targets.len());
-        let all = vec![0..0; flows.len()];
+        let mut fast = self.fast_sum::<GRADIENT>(targets.len(), tolerance)?;
         for some in targets.chunks(CHUNK) {
             if progress.is_cancelled() {
                 return Err(SuspensionError::Interrupted);
             }
-            let beside = self.beside_points(&flows, some)?;
-            let apart = (0..some.len()).filter(|place| beside.binary_search(place).is_err());
-            let apart: Vec<usize> = apart.collect();
-            let of = |places: &[usize]| -> Vec<Point3<f64>> {
-                places.iter().map(|&place| some[place]).collect()
+            let mut found = match &mut fast {
+                Some(fast) => self.by_sum::<GRADIENT>(fast, some, tolerance)?,
+                None => self.one_by_one::<GRADIENT>(some, tolerance)?,
             };
-            let mut at_apart = sources.at::<GRADIENT>(&of(&apart), tolerance)?;
-            self.correct::<GRADIENT>(&flows, &of(&apart), tolerance, &all, &mut at_apart)?;
-            let at_beside = self.one_by_one::<GRADIENT>(&flows, &of(&beside), tolerance)?;
-            let mut found = vec![FlowGradientAt::default(); some.len()];
-            let all_found = apart
-                .iter()
-                .zip(at_apart)
-                .chain(beside.iter().zip(at_beside));
-            for (&place, at) in all_found {
-                found[place] = at;
-            }
             for (at, target) in found.iter_mut().zip(some) {
-                at.velocity += self.background.at(target.coords);
-                at.gradient += self.background.gradient;
+                at.velocity += self.0.background.at(target.coords);
+                at.gradient += self.0.background.gradient;
             }
             evaluated.extend(found);
             progress.advance(some.len());
@@ -215,17 +299,138 @@ impl SuspensionFlow {
         Ok(evaluated)
     }
 
-    /// The targets, by their places, that are beside a point of any body.
-    fn beside_points(
+    /// A tolerance relative to the densities from one that is relative to the largest speed.
+    fn of_densities(&self, tolerance: f64) -> f64 {
+        let inner = &*self.0;
+        let density = *inner.density.get_or_init(|| {
+            let of_body = |body: &BodyFlow| {
+                let layers = body.disturbance.layers();
+                let most = |field: &SurfaceModes| {
+                    (0..field.modes()).map(|n| field.amplitude(n)).fold(0.0, f64::max)
+                };
+                most(&layers.double).max(most(&layers.single) * body.on().size())
+            };
+            inner.bodies.iter().map(of_body).fold(0.0, f64::max)
+        });
+        if density > 0.0 && inner.largest_speed > 0.0 {
+            (tolerance * inner.largest_speed / density).max(FINEST)
+        } else {
+            tolerance
+        }
+    }
+
+    /// A fast sum, if that is how so many targets are evaluated.
+    fn fast_sum<const GRADIENT: bool>(
         &self,
-        flows: &[Flow<'_>],
+        targets: usize,
+        tolerance: f64,
+    ) -> Result<Option<Sums>, SuspensionError> {
+        if self.0.bodies.len() == 1 || MARGIN * tolerance < FINEST_SUM {
+            return Ok(None);
+        }
+        if are_few(self.points()?.positions.len(), targets) {
+            return Ok(None);
+        }
+        let output = if GRADIENT {
+            Output::Gradient
+        } else {
+            Output::Pressure
+        };
+        let operators = self.0.operators.clone();
+        let tolerance = MARGIN * tolerance;
+        Ok(Some(Sums::new(operators, Singularities::Both, output, tolerance)))
+    }
+
+    fn by_sum<const GRADIENT: bool>(
+        &self,
+        fast: &mut Sums,
         targets: &[Point3<f64>],
-    ) -> Result<Vec<usize>, FlowError> {
+        tolerance: f64,
+    ) -> Result<Vec<FlowGradientAt>, SuspensionError> {
+        let beside = self.beside_points(targets)?;
+        let apart = (0..targets.len()).filter(|place| beside.binary_search(place).is_err());
+        let apart: Vec<usize> = apart.collect();
+        let of = |places: &[usize]| -> Vec<Point3<f64>> {
+            places.iter().map(|&place| targets[place]).collect()
+        };
+        let mut at_apart = self.sum(fast, &of(&apart), tolerance)?;
+        self.correct::<GRADIENT>(&of(&apart), tolerance, |_, _| false, &mut at_apart)?;
+        let at_beside = self.one_by_one::<GRADIENT>(&of(&beside), tolerance)?;
+        let mut found = vec![FlowGradientAt::default(); targets.len()];
+        let all_found = apart
+            .iter()
+            .zip(at_apart)
+            .chain(beside.iter().zip(at_beside));
+        for (&place, at) in all_found {
+            found[place] = at;
+        }
+        Ok(found)
+    }
+
+    /// The layers of all bodies at points.
+    fn points(&self) -> Result<&LayerPoints, FlowError> {
+        let inner = &*self.0;
+        if let Some(points) = inner.points.get() {
+            return Ok(points);
+        }
+        let mut points = LayerPoints {
+            positions: Vec::new(),
+            normals: Vec::new(),
+            stokeslets: Vec::new(),
+            stresslets: Vec::new(),
+            singularities: Singularities::Both,
+        };
+        for body in &inner.bodies {
+            let frame = &body.frame;
+            body.disturbance.for_each_point(|point| {
+                let [stokeslet, stresslet] = strengths_in_lab(frame, point.single, point.double);
+                points.positions.push(frame.point_to_lab(point.position.into()).into());
+                points.normals.push(frame.vector_to_lab(point.normal).into());
+                points.stokeslets.push(stokeslet.into());
+                points.stresslets.push(stresslet.into());
+            })?;
+        }
+        Ok(inner.points.get_or_init(|| points))
+    }
+
+    fn sum(
+        &self,
+        fast: &mut Sums,
+        targets: &[Point3<f64>],
+        tolerance: f64,
+    ) -> Result<Vec<FlowGradientAt>, SuspensionError> {
+        if targets.is_empty() {
+            return Ok(Vec::new());
+        }
+        let points = self.points()?;
+        let targets: Vec<[f64; 3]> = targets.iter().map(|&x| x.into()).collect();
+        let strengths = points.strengths(0..points.positions.len());
+        // The targets are others with each chunk.
+        fast.forget_plan();
+        let between = Points::apart(&points.positions, &targets);
+        let flow = fast.apply(between, &strengths, MARGIN * tolerance)?;
+        let at = |index: usize| FlowGradientAt {
+            velocity: flow.velocity[index].into(),
+            pressure: flow.pressure[index],
+            gradient: match flow.gradient.get(index) {
+                Some(rows) => Matrix3::from_fn(|i, j| rows[i][j]),
+                None => Matrix3::zeros(),
+            },
+        };
+        Ok((0..targets.len()).map(at).collect())
+    }
+
+    /// The targets, by their places, that are beside a point of any body.
+    fn beside_points(&self, targets: &[Point3<f64>]) -> Result<Vec<usize>, FlowError> {
+        let balls = self.0.bodies.iter().map(|body| Ball {
+            center: body.frame.center(),
+            radius: 1.1 * body.size(),
+        });
+        let neighbours = Neighbours::new(balls);
         let beside = |target: &Point3<f64>| -> Result<bool, FlowError> {
-            for (body, flow) in self.bodies.iter().zip(flows) {
-                let at = body.frame.point_to_body(*target);
-                let size = body.discretization.size();
-                if at.coords.norm() <= 1.1 * size && flow.is_beside_a_point(at)? {
+            for index in neighbours.holding(*target) {
+                let body = &self.0.bodies[index];
+                if body.disturbance.is_beside_a_point(body.frame.point_to_body(*target))? {
                     return Ok(true);
                 }
             }
@@ -241,7 +446,6 @@ impl SuspensionFlow {
     /// The flow of every body by itself, added up.
     fn one_by_one<const GRADIENT: bool>(
         &self,
-        flows: &[Flow<'_>],
         targets: &[Point3<f64>],
         tolerance: f64,
     ) -> Result<Vec<FlowGradientAt>, FlowError> {
@@ -249,11 +453,10 @@ impl SuspensionFlow {
         if targets.is_empty() {
             return Ok(sum);
         }
-        for (body, flow) in self.bodies.iter().zip(flows) {
-            let targets = targets
-                .iter()
-                .map(|&target| body.frame.point_to_body(target));
-            let found = flow.evaluate::<GRADIENT>(&targets.collect::<Vec<_>>(), tolerance)?;
+        for body in &self.0.bodies {
+            let in_body = |&target: &Point3<f64>| body.frame.point_to_body(target);
+            let targets: Vec<Point3<f64>> = targets.iter().map(in_body).collect();
+            let found = body.disturbance.evaluate::<GRADIENT>(&targets, tolerance)?;
             for (sum, at) in sum.iter_mut().zip(found) {
                 *sum += in_lab(&body.frame, at);
             }
@@ -261,25 +464,40 @@ impl SuspensionFlow {
         Ok(sum)
     }
 
-    /// Puts right what points near a body get wrong, but for the targets that each body leaves out.
+    /// Puts right what points near a body get wrong, but for the targets that a body leaves out.
     fn correct<const GRADIENT: bool>(
         &self,
-        flows: &[Flow<'_>],
         targets: &[Point3<f64>],
         tolerance: f64,
-        left_out: &[Range<usize>],
+        leaves_out: impl Fn(usize, usize) -> bool + Sync,
         found: &mut [FlowGradientAt],
     ) -> Result<(), SuspensionError> {
-        let corrections = (0..flows.len()).into_par_iter().map(|body| {
-            let (frame, flow) = (&self.bodies[body].frame, &flows[body]);
-            let reach = flow.correction_reach(tolerance)?;
-            let near = targets.iter().enumerate().filter_map(|(index, &target)| {
-                let at = frame.point_to_body(target);
-                let is_near = at.coords.norm() <= reach && !left_out[body].contains(&index);
-                is_near.then_some((index, at))
-            });
-            let (indices, near): (Vec<usize>, Vec<Point3<f64>>) = near.unzip();
-            let corrections = flow.corrections::<GRADIENT>(&near, tolerance)?;
+        let bodies = &self.0.bodies;
+        let ball = |body: &BodyFlow| -> Result<Ball, FlowError> {
+            let reach = body.disturbance.correction_reach(tolerance)?;
+            Ok(Ball {
+                center: body.frame.center(),
+                radius: body.frame.scale() * reach,
+            })
+        };
+        let balls = bodies.par_iter().map(ball);
+        let neighbours = Neighbours::new(balls.collect::<Result<Vec<Ball>, FlowError>>()?);
+        let near: Vec<Vec<usize>> = (targets.par_iter())
+            .map(|&target| neighbours.holding(target))
+            .collect();
+        let mut of_body = vec![Vec::new(); bodies.len()];
+        for (index, near) in near.into_iter().enumerate() {
+            for body in near {
+                if !leaves_out(body, index) {
+                    of_body[body].push(index);
+                }
+            }
+        }
+        let corrections = bodies.par_iter().zip(&of_body).map(|(body, indices)| {
+            let frame = &body.frame;
+            let near = indices.iter().map(|&index| frame.point_to_body(targets[index]));
+            let near: Vec<Point3<f64>> = near.collect();
+            let corrections = body.disturbance.corrections::<GRADIENT>(&near, tolerance)?;
             let corrections = corrections.into_iter();
             Ok(corrections
                 .map(|(place, at)| (indices[place], in_lab(frame, at)))
@@ -291,6 +509,195 @@ impl SuspensionFlow {
             }
         }
         Ok(())
+    }
+
+    /// Traction and pressure of the fluid on the surfaces of some bodies, background included, with the normal out of
+    /// the body: per area of the laboratory, as vectors in the body's frame. What was found once is kept.
+    ///
+    /// # Errors
+    /// If a quadrature rule is missing, or the caller cancels.
+    pub fn surface_stresses(
+        &self,
+        bodies: &[usize],
+        progress: &dyn Progress,
+    ) -> Result<Vec<&SurfaceStress>, SuspensionError> {
+        let stresses = &self.0.stresses;
+        let missing = bodies.iter().copied().filter(|&body| stresses[body].get().is_none());
+        let missing: Vec<usize> = missing.collect();
+        progress.begin("tractions", missing.len());
+        for some in missing.chunks(BODIES) {
+            if progress.is_cancelled() {
+                return Err(SuspensionError::Interrupted);
+            }
+            for (&body, stress) in some.iter().zip(self.new_stresses(some)?) {
+                stresses[body].get_or_init(|| stress);
+            }
+            progress.advance(some.len());
+        }
+        Ok(bodies.iter().filter_map(|&body| stresses[body].get()).collect())
+    }
+
+    /// A body's own layers are taken mode by mode, what the others do on rings of points.
+    fn new_stresses(&self, bodies: &[usize]) -> Result<Vec<SurfaceStress>, SuspensionError> {
+        let inner = &*self.0;
+        let tolerance = self.of_densities(inner.tolerance);
+        let mut targets = Vec::new();
+        let mut first = Vec::with_capacity(bodies.len());
+        for &body in bodies {
+            let BodyFlow { frame, disturbance, .. } = &inner.bodies[body];
+            let points = ring_points(disturbance.discretization(), disturbance.azimuths()?);
+            first.push(targets.len());
+            targets.extend(points.iter().map(|&x| frame.point_to_lab(x)));
+        }
+        first.push(targets.len());
+        let owner = |target: usize| bodies[first.partition_point(|&f| f <= target) - 1];
+        let found = self.of_others(&targets, tolerance, owner)?;
+        let stresses = bodies.iter().enumerate().map(|(place, &body)| {
+            let BodyFlow { frame, disturbance, .. } = &inner.bodies[body];
+            let nodes = disturbance.discretization().nodes();
+            let own = disturbance.surface_stress(Side::Exterior)?;
+            let samples = [disturbance.azimuths()?, HALVES];
+            let n_max = (disturbance.modes() - 1).max(linear_flow::LAST_MODE);
+            let mut at = found[first[place]..first[place + 1]].iter();
+            let traction = SurfaceModes::of_samples(nodes.len(), n_max, samples, |k, [cos, sin]| {
+                let [across, along] = nodes[k].normal;
+                let normal = Vector3::new(across * cos, across * sin, along);
+                let mut at = at.next().copied().unwrap_or_default();
+                at.gradient += inner.background.gradient;
+                frame.vector_to_body(at.stress() * frame.vector_to_lab(normal))
+            });
+            let mut at = found[first[place]..first[place + 1]].iter();
+            let pressure = SurfaceModes::of_samples(nodes.len(), n_max, samples, |_, _| {
+                at.next().map_or_else(Vector3::zeros, |at| at.pressure * Vector3::z())
+            });
+            let scale = frame.scale();
+            let whole = |others: SurfaceModes, own: &SurfaceModes| {
+                others.plus(1.0 / scale, own).scaled(inner.viscosity)
+            };
+            Ok(SurfaceStress {
+                traction: whole(traction, &own.traction),
+                pressure_along_axis: whole(pressure, &own.pressure_along_axis),
+            })
+        });
+        stresses.collect()
+    }
+
+    /// The flow of all bodies but the one that a target is on; for viscosity 1, without the undisturbed flow.
+    fn of_others(
+        &self,
+        targets: &[Point3<f64>],
+        tolerance: f64,
+        owner: impl Fn(usize) -> usize + Sync,
+    ) -> Result<Vec<FlowGradientAt>, SuspensionError> {
+        let inner = &*self.0;
+        let mut found = vec![FlowGradientAt::default(); targets.len()];
+        if inner.bodies.len() == 1 {
+            return Ok(found);
+        }
+        if let Some(mut fast) = self.fast_sum::<true>(targets.len(), tolerance)? {
+            found.clear();
+            for some in targets.chunks(CHUNK) {
+                found.extend(self.sum(&mut fast, some, tolerance)?);
+            }
+            let leaves_out = |body: usize, target: usize| owner(target) == body;
+            self.correct::<true>(targets, tolerance, leaves_out, &mut found)?;
+            for (index, body) in inner.bodies.iter().enumerate() {
+                let own: Vec<usize> = (0..targets.len()).filter(|&t| owner(t) == index).collect();
+                let in_body = own.iter().map(|&t| body.frame.point_to_body(targets[t]));
+                let of_own = body.disturbance.of_points(&in_body.collect::<Vec<_>>())?;
+                for (&target, at) in own.iter().zip(of_own) {
+                    found[target] -= in_lab(&body.frame, at);
+                }
+            }
+            return Ok(found);
+        }
+        for (index, body) in inner.bodies.iter().enumerate() {
+            let others: Vec<usize> = (0..targets.len()).filter(|&t| owner(t) != index).collect();
+            let in_body = others.iter().map(|&t| body.frame.point_to_body(targets[t]));
+            let in_body: Vec<Point3<f64>> = in_body.collect();
+            let of_body = body.disturbance.evaluate::<true>(&in_body, tolerance)?;
+            for (&target, at) in others.iter().zip(of_body) {
+                found[target] += in_lab(&body.frame, at);
+            }
+        }
+        Ok(found)
+    }
+
+    /// The surface of a body as points, with what acts there; in the laboratory.
+    ///
+    /// # Errors
+    /// If there is no such body, or a quadrature rule is missing.
+    pub fn surface(&self, body: usize) -> Result<Surface, SuspensionError> {
+        let bodies = self.0.bodies.len();
+        let Some(of_body) = self.0.bodies.get(body) else {
+            return Err(SuspensionError::NoBody { body, bodies });
+        };
+        let stresses = self.surface_stresses(&[body], &Silent)?;
+        let mut surface = Surface::default();
+        for stress in stresses {
+            surface = of_body.surface(stress);
+        }
+        Ok(surface)
+    }
+
+    /// The rate of work $-\int u \cdot \sigma\nu\\, d\Gamma$ that every body's surface does on the fluid; of a swimmer its
+    /// slip included. In a fluid at rest far away, the sum is the dissipation.
+    ///
+    /// In the rigid motion it is $F \cdot U + T \cdot \Omega$; the traction is needed for the slip's part only.
+    ///
+    /// # Errors
+    /// If a quadrature rule is missing, or the caller cancels.
+    pub fn powers(&self, progress: &dyn Progress) -> Result<Vec<f64>, SuspensionError> {
+        let inner = &*self.0;
+        let slips = (0..inner.bodies.len()).filter(|&body| inner.bodies[body].slip.is_some());
+        let slips: Vec<usize> = slips.collect();
+        let mut powers: Vec<f64> = (inner.bodies.iter())
+            .map(|body| {
+                let scale = body.frame.scale();
+                inner.viscosity * scale * body.wrench.power(&body.motion)
+            })
+            .collect();
+        for (&body, stress) in slips.iter().zip(self.surface_stresses(&slips, progress)?) {
+            let of = &inner.bodies[body];
+            if let Some(slip) = &of.slip {
+                let area = of.frame.scale().powi(2);
+                powers[body] -= area * slip.inner_product(of.on(), &stress.traction);
+            }
+        }
+        Ok(powers)
+    }
+}
+
+impl BodyFlow {
+    fn surface(&self, stress: &SurfaceStress) -> Surface {
+        let (nodes, frame) = (self.on().nodes(), &self.frame);
+        let velocity = self.surface_velocity();
+        let azimuths = 2 * stress.traction.modes().max(velocity.modes()) + 1;
+        let mut surface = Surface::default();
+        for (k, node) in nodes.iter().enumerate() {
+            for l in 0..azimuths {
+                let theta = std::f64::consts::TAU * l as f64 / azimuths as f64;
+                let (sin, cos) = theta.sin_cos();
+                let turned =
+                    |[r, t, z]: [f64; 3]| Vector3::new(r * cos - t * sin, r * sin + t * cos, z);
+                let to_lab = |vector: [f64; 3]| frame.vector_to_lab(turned(vector));
+                let point = turned([node.r, 0.0, node.z]);
+                surface.points.push(frame.point_to_lab(point.into()));
+                surface.normals.push(to_lab([node.normal[0], 0.0, node.normal[1]]));
+                let share = std::f64::consts::TAU / azimuths as f64 * node.weight;
+                surface.weights.push(share * frame.scale().powi(2));
+                surface.velocity.push(to_lab(velocity.at(k, theta)));
+                surface.traction.push(to_lab(stress.traction.at(k, theta)));
+                let pressure = stress.pressure_along_axis.at(k, theta)[AXIAL];
+                surface.pressure.push(pressure);
+            }
+        }
+        surface
+    }
+
+    /// The body's shape.
+    pub fn shape(&self) -> &Shape {
+        self.on().curve()
     }
 }
 
@@ -311,74 +718,5 @@ fn in_lab(frame: &Frame, at: FlowGradientAt) -> FlowGradientAt {
         velocity: frame.vector_to_lab(at.velocity),
         pressure: at.pressure / frame.scale(),
         gradient: frame.tensor_to_lab(&at.gradient) / frame.scale(),
-    }
-}
-
-/// The layers of all bodies as singularities in the laboratory.
-struct Sources {
-    positions: Vec<[f64; 3]>,
-    stokeslets: Vec<[f64; 3]>,
-    densities: Vec<[f64; 3]>,
-    normals: Vec<[f64; 3]>,
-}
-
-impl Sources {
-    fn new(flow: &SuspensionFlow, flows: &[Flow<'_>]) -> Result<Self, FlowError> {
-        let mut sources = Self {
-            positions: Vec::new(),
-            stokeslets: Vec::new(),
-            densities: Vec::new(),
-            normals: Vec::new(),
-        };
-        for (body, flow) in flow.bodies.iter().zip(flows) {
-            let frame = &body.frame;
-            let scale = frame.scale();
-            flow.for_each_point(|point| {
-                let vector = |v: Vector3<f64>| -> [f64; 3] { frame.vector_to_lab(v).into() };
-                let position = frame.point_to_lab(point.position.into());
-                sources.positions.push(position.into());
-                sources.stokeslets.push(vector(scale * point.single));
-                // The sum's stresslet has the other sign.
-                sources
-                    .densities
-                    .push(vector(-scale * scale * point.double));
-                sources.normals.push(vector(point.normal));
-            })?;
-        }
-        Ok(sources)
-    }
-
-    fn at<const GRADIENT: bool>(
-        &self,
-        targets: &[Point3<f64>],
-        tolerance: f64,
-    ) -> Result<Vec<FlowGradientAt>, SuspensionError> {
-        let targets: Vec<[f64; 3]> = targets.iter().map(|&x| x.into()).collect();
-        let output = if GRADIENT {
-            Output::Gradient
-        } else {
-            Output::Pressure
-        };
-        let strengths = Strengths {
-            stokeslets: Some(&self.stokeslets),
-            stresslets: Some(Stresslets {
-                densities: &self.densities,
-                normals: &self.normals,
-            }),
-            ..Strengths::default()
-        };
-        let points = Points::apart(&self.positions, &targets);
-        let tolerance = MARGIN * tolerance;
-        let mut sums = Sums::new(Operators::default(), Singularities::Both, output, tolerance);
-        let flow = sums.apply(points, &strengths, tolerance)?;
-        let at = |index: usize| FlowGradientAt {
-            velocity: flow.velocity[index].into(),
-            pressure: flow.pressure[index],
-            gradient: match flow.gradient.get(index) {
-                Some(rows) => Matrix3::from_fn(|i, j| rows[i][j]),
-                None => Matrix3::zeros(),
-            },
-        };
-        Ok((0..targets.len()).map(at).collect())
     }
 }

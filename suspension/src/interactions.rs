@@ -3,16 +3,19 @@
 //! All points together go through one [fast sum](stokes_fmm). What it counts of a body's own points is taken away by the shape's
 //! point sums (`body::point_sums`), and points that are near another body (`near`) are put right.
 
-use std::ops::Range;
 use std::time::Instant;
 
+use nalgebra::Vector3;
 use panel_quadrature::QuadratureError;
 use rayon::prelude::*;
-use stokes_fmm::{FmmError, Output, Points, Singularities, Strengths, Stresslets, direct};
+use stokes_fmm::{FmmError, Output, Points, Singularities, direct};
 
 use super::near::{self, Near};
+use super::points::{LayerPoints, strengths_in_lab};
 use super::sums::{self, Operators, Sums};
-use super::tables::{Batches, Layout, Member, multiply};
+use super::batches::{Batches, multiply};
+use super::layout::Layout;
+use super::tables::Member;
 
 /// Why the interactions cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -24,7 +27,7 @@ pub enum InteractionError {
     /// A quadrature rule is missing.
     #[error(transparent)]
     Quadrature(#[from] QuadratureError),
-    /// Whoever waited has lost interest.
+    /// Cancelled by the caller.
     #[error("interrupted")]
     Interrupted,
 }
@@ -48,19 +51,15 @@ pub(crate) struct Interactions {
     /// Where the bodies' modes are, and their points.
     fields: Layout,
     points: Layout,
-    positions: Vec<[f64; 3]>,
-    normals: Vec<[f64; 3]>,
+    layers: LayerPoints,
     near: Near,
     uses: Use,
     sums: Sums,
-    singularities: Singularities,
     /// Wall-clock seconds of all sums so far.
     pub seconds_of_sums: f64,
     /// Room for products; none when at rest.
     own: Vec<f64>,
     strengths: Vec<near::Strengths>,
-    stokeslets: Vec<[f64; 3]>,
-    stresslets: Vec<[f64; 3]>,
 }
 
 impl Interactions {
@@ -75,21 +74,21 @@ impl Interactions {
         operators: Operators,
         done: &(dyn Fn(usize) + Sync),
     ) -> Result<Self, InteractionError> {
-        let fields = Layout::new(members.iter().map(|m| m.tables.grid.field_len()));
-        let points = Layout::new(members.iter().map(|m| m.tables.grid.len()));
+        let fields = Layout::new(members.iter().map(|m| m.tables.field_len()));
+        let points = Layout::new(members.iter().map(|m| m.tables.grid().len()));
         let at_points = |of: &(dyn Fn(&Member, usize) -> [f64; 3] + Sync)| -> Vec<[f64; 3]> {
             (members.par_iter())
                 .flat_map_iter(|member| {
-                    (member.tables.grid.places()).map(move |place| of(member, place))
+                    (member.tables.grid().places()).map(move |place| of(member, place))
                 })
                 .collect()
         };
         let positions = at_points(&|member, place| {
-            let position = member.tables.grid.position(place);
+            let position = member.tables.grid().position(place);
             member.frame.point_to_lab(position).into()
         });
         let normals = at_points(&|member, place| {
-            let normal = member.tables.grid.normal(place);
+            let normal = member.tables.grid().normal(place);
             member.frame.vector_to_lab(normal).into()
         });
         let single = members.iter().any(|m| m.tables.weights.single != 0.0);
@@ -110,16 +109,18 @@ impl Interactions {
             batches: Batches::new(&members),
             own: Vec::new(),
             strengths: Vec::new(),
-            stokeslets: Vec::new(),
-            stresslets: Vec::new(),
-            singularities,
             sums: Sums::new(operators, singularities, Output::Velocity, tolerance),
             seconds_of_sums: 0.0,
             members,
             fields,
             points,
-            positions,
-            normals,
+            layers: LayerPoints {
+                positions,
+                normals,
+                stokeslets: Vec::new(),
+                stresslets: Vec::new(),
+                singularities,
+            },
         })
     }
 
@@ -161,9 +162,8 @@ impl Interactions {
         let mut velocity = if few {
             self.sum_over_others()?
         } else {
-            let points = Points::same(&self.positions);
-            let all = 0..self.points.len();
-            let strengths = singularities(&self.stokeslets, &self.stresslets, &self.normals, all);
+            let points = Points::same(&self.layers.positions);
+            let strengths = self.layers.strengths(0..self.points.len());
             self.sums.apply(points, &strengths, tolerance)?.velocity
         };
         self.seconds_of_sums += start.elapsed().as_secs_f64();
@@ -192,13 +192,13 @@ impl Interactions {
                         component.clear();
                         component.resize(strengths[body].points[0].len(), 0.0);
                     }
-                    for (place, velocity) in tables.grid.places().zip(at_points.iter()) {
+                    for (place, velocity) in tables.grid().places().zip(at_points.iter()) {
                         let turned = frame.vector_to_body((*velocity).into());
                         for k in 0..3 {
                             in_body[k][place] = turned[k];
                         }
                     }
-                    tables.grid.add_modes(in_body, scratch, modes);
+                    tables.grid().add_modes(in_body, scratch, modes);
                     for (mode, own) in modes.iter_mut().zip(&own[fields.of(body)]) {
                         *mode -= own;
                     }
@@ -225,11 +225,11 @@ impl Interactions {
             });
     }
 
-    /// Gives back what only products need: it is made anew with the next one.
-    pub fn rest(&mut self) {
-        self.sums.rest();
+    /// Frees the buffers of products: they are made anew with the next one.
+    pub fn free_buffers(&mut self) {
+        self.sums.forget_plan();
         (self.own, self.strengths) = (Vec::new(), Vec::new());
-        (self.stokeslets, self.stresslets) = (Vec::new(), Vec::new());
+        (self.layers.stokeslets, self.layers.stresslets) = (Vec::new(), Vec::new());
     }
 
     fn make_room(&mut self) {
@@ -241,8 +241,9 @@ impl Interactions {
         self.strengths = bodies
             .map(|body| self.near.strengths(&self.members, body))
             .collect();
-        self.stokeslets = room(self.singularities != Singularities::Stresslets);
-        self.stresslets = room(self.singularities != Singularities::Stokeslets);
+        let stokeslets = room(self.layers.has_stokeslets());
+        self.layers.stresslets = room(self.layers.has_stresslets());
+        self.layers.stokeslets = stokeslets;
     }
 
     /// The velocities at all points, of the points of all other bodies. Of what neighbours on a body do to each other a sum has fewer digits
@@ -251,17 +252,15 @@ impl Interactions {
         let mut velocity = Vec::with_capacity(self.points.len());
         for body in 0..self.members.len() {
             let own = self.points.of(body);
-            let targets = &self.positions[own.clone()];
+            let targets = &self.layers.positions[own.clone()];
             let first = velocity.len();
             velocity.resize(first + targets.len(), [0.0; 3]);
             for others in [0..own.start, own.end..self.points.len()] {
                 if others.is_empty() {
                     continue;
                 }
-                let (sources, strengths) = (
-                    &self.positions[others.clone()],
-                    singularities(&self.stokeslets, &self.stresslets, &self.normals, others),
-                );
+                let sources = &self.layers.positions[others.clone()];
+                let strengths = self.layers.strengths(others);
                 let of_others = direct::sum(sources, &strengths, targets, Output::Velocity, None)?;
                 for (sum, more) in velocity[first..].iter_mut().zip(of_others.velocity) {
                     *sum = std::array::from_fn(|k| sum[k] + more[k]);
@@ -283,7 +282,8 @@ impl Interactions {
                 self.points.split(strengths).into_iter().map(Some).collect()
             }
         };
-        let (stokeslets, stresslets) = (split(&mut self.stokeslets), split(&mut self.stresslets));
+        let layers = &mut self.layers;
+        let (stokeslets, stresslets) = (split(&mut layers.stokeslets), split(&mut layers.stresslets));
         let singularities = stokeslets.into_par_iter().zip(stresslets);
         (self.strengths.par_iter_mut())
             .zip(singularities)
@@ -292,7 +292,7 @@ impl Interactions {
                 || (Vec::new(), Default::default()),
                 |(scratch, room), (body, (strengths, (mut stokeslets, mut stresslets)))| {
                     let Member { tables, frame } = &members[body];
-                    let (grid, field) = (&tables.grid, &densities[fields.of(body)]);
+                    let (grid, field) = (tables.grid(), &densities[fields.of(body)]);
                     let upsampled = near.upsamplings(body).zip(&mut strengths.upsampled);
                     for (upsampling, strengths) in upsampled {
                         if let Some(upsampling) = upsampling {
@@ -301,41 +301,22 @@ impl Interactions {
                     }
                     let strengths = &mut strengths.points;
                     grid.to_points(field, scratch, strengths);
-                    // Of shares of the surface, the square of the scale; a single layer's density has the inverse of the scale. The
-                    // sum's stresslet has the other sign.
-                    let scale = frame.scale();
-                    let [single, double] = [
-                        tables.weights.single * scale,
-                        -tables.weights.double * scale * scale,
-                    ];
                     for (point, place) in grid.places().enumerate() {
                         let strength = strengths.each_ref().map(|s| s[place]);
-                        let in_lab = frame.vector_to_lab(strength.into());
+                        let strength = Vector3::from(strength);
+                        let (single, double) = (
+                            tables.weights.single * strength,
+                            tables.weights.double * strength,
+                        );
+                        let [stokeslet, stresslet] = strengths_in_lab(frame, single, double);
                         if let Some(stokeslets) = &mut stokeslets {
-                            stokeslets[point] = (single * in_lab).into();
+                            stokeslets[point] = stokeslet.into();
                         }
                         if let Some(stresslets) = &mut stresslets {
-                            stresslets[point] = (double * in_lab).into();
+                            stresslets[point] = stresslet.into();
                         }
                     }
                 },
             );
-    }
-}
-
-/// Some of the points as singularities; kinds that are not there have no strengths.
-fn singularities<'s>(
-    stokeslets: &'s [[f64; 3]],
-    stresslets: &'s [[f64; 3]],
-    normals: &'s [[f64; 3]],
-    range: Range<usize>,
-) -> Strengths<'s> {
-    Strengths {
-        stokeslets: (!stokeslets.is_empty()).then(|| &stokeslets[range.clone()]),
-        stresslets: (!stresslets.is_empty()).then(|| Stresslets {
-            densities: &stresslets[range.clone()],
-            normals: &normals[range],
-        }),
-        ..Strengths::default()
     }
 }

@@ -1,30 +1,74 @@
-//! Many bodies: what each is asked, and what all of them do together. Everything is in the laboratory's frame and for viscosity 1.
+//! Stokes flow around many bodies of revolution, one included: the question, the solver and its answer.
+//!
+//! A [`Suspension`] says where bodies are and what is known of their motions, a [`Solver`] answers it with an estimate of
+//! the error, and the [`Answer`] gives forces, motions and the flow at any points. On body $i$
+//!
+//! $$ \bigl(\tfrac12 + D_i + \eta_i S_i\bigr)\\, \sigma_i + \sum_{j \ne i} u_j = U_i + \Omega_i \times x + u_{s,i} - u_\infty \quad \text{(held)}, $$
+//! $$ \bigl(\tfrac12 + D_i + P_i\bigr)\\, \sigma_i + S_i[\varrho_i] + \sum_{j \ne i} u_j = u_{s,i} - u_\infty \quad \text{(free)}, $$
+//!
+//! where $u_j$ is the flow of body $j$'s layers: $(D_j + \eta_j S_j)\sigma_j$, or $D_j\sigma_j + S_j\varrho_j$ with the
+//! density $\varrho_j$ of its force and torque (see [`stokes_body::mobility`]). A body that is held in some directions and
+//! free in others has the first equation with unknown velocities. A body alone is solved for directly, many by
+//! iteration.
 //!
 //! | module | what |
 //! |---|---|
-//! | [`suspension`] | the question and its answer, with an estimate of the error |
-//! | [`flow`] | the flow at any points |
-//! | [`interactions`] | what bodies do to each other |
+//! | [`suspension`], [`motion`], [`slip`] | the question |
+//! | [`options`], [`solver`] | how it is answered |
+//! | [`answer`], [`flow`], `further_errors` | the answer |
+//! | [`grand`] | grand resistance and mobility matrices |
+//! | `arrangement`, `resolution`, `refine`, `estimate` | from a tolerance to resolutions, and the error |
+//! | `class`, `tables`, `finer` | what belongs to a shape at a resolution |
+//! | `assembly`, `system`, `coarse`, `constraint`, `iteration`, `solution` | the linear system of bodies in their places |
+//! | `interactions`, `points`, `sums`, `near`, `upsampling`, `batches`, `layout` | one product with it |
+//! | `check` | by how much a solution misses the boundary velocity |
 
-pub(crate) mod assembly;
-pub(crate) mod check;
-pub(crate) mod class;
-pub(crate) mod coarse;
+pub mod answer;
+mod arrangement;
+mod assembly;
+mod batches;
+mod check;
+mod class;
+mod coarse;
+mod constraint;
 pub mod error;
+mod estimate;
+mod finer;
 pub mod flow;
-mod further;
+mod further_errors;
 pub mod grand;
-pub mod interactions;
+mod imposed;
+mod interactions;
+mod iteration;
+mod layout;
 mod memory;
-pub(crate) mod near;
+pub mod motion;
+mod near;
+pub mod options;
+mod points;
+mod refine;
 mod resolution;
-mod rounds;
-pub(crate) mod solution;
-mod spheres;
+pub mod slip;
+mod solution;
+mod solve_error;
+pub mod solver;
 mod sums;
 pub mod suspension;
-pub(crate) mod system;
-pub(crate) mod tables;
+mod system;
+mod tables;
+mod tolerances;
 mod upsampling;
 
+pub use answer::{Answer, BodyAnswer, Statistics, Timings};
 pub use error::SuspensionError;
+pub use flow::{BodyFlow, Flow, StressAt, Surface};
+pub use grand::GrandMatrix;
+pub use inexact_krylov::{Method, Stop};
+pub use interactions::InteractionError;
+pub use iteration::Iteration;
+pub use motion::{Component, Mixed, Motion};
+pub use options::{Accuracy, Levels, Options};
+pub use slip::Slip;
+pub use solve_error::SolveError;
+pub use solver::Solver;
+pub use suspension::{Body, Suspension};

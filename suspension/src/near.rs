@@ -5,13 +5,13 @@
 
 use std::sync::Arc;
 
+use bodies_of_revolution::{Ball, Meridian, Neighbours};
 use nalgebra::{Point3, Vector3};
 use panel_quadrature::QuadratureError;
 use rayon::prelude::*;
 
 use super::tables::Member;
 use super::upsampling::{self, Upsampling};
-use bodies_of_revolution::Meridian;
 use stokes_body::far::Separation;
 use stokes_body::influence::Buffers;
 use stokes_body::surface_grid::PointVectors;
@@ -84,9 +84,15 @@ impl Near {
             .par_iter()
             .map(|member| Surrounding::new(member, tolerance))
             .collect();
+        let neighbours = Neighbours::new(
+            (members.iter().zip(&surroundings)).map(|(member, around)| Ball {
+                center: member.frame.center(),
+                radius: around.radius + around.reach,
+            }),
+        );
         let mut visits: Vec<Vec<Visit>> = (0..members.len())
             .into_par_iter()
-            .map(|body| visits(members, &surroundings, body))
+            .map(|body| visits(members, &surroundings, &neighbours, body))
             .collect();
         let mut stored = 0;
         let mut upsampled = vec![[const { None }; upsampling::LEVELS]; members.len()];
@@ -97,7 +103,7 @@ impl Near {
                     *used = Some(members[visit.source].tables.upsampling(level)?);
                 }
             }
-            let bytes = 8 * visit.len(members);
+            let bytes = 8 * visit.len(members)?;
             if stored + bytes <= memory {
                 stored += bytes;
                 visit.rows = Some(Vec::new());
@@ -131,7 +137,7 @@ impl Near {
             upsampling.map_or_else(PointVectors::default, |it| it.grid.vectors())
         });
         Strengths {
-            points: members[body].tables.grid.vectors(),
+            points: members[body].tables.grid().vectors(),
             upsampled: upsampled.collect(),
         }
     }
@@ -184,7 +190,7 @@ impl Surrounding {
         let separation = Separation::of_resolved(
             &tables.discretization,
             tables.n_max,
-            [tables.discretization.order(), tables.grid.azimuths()],
+            [tables.discretization.order(), tables.grid().azimuths()],
             tolerance,
         );
         let finer = (0..upsampling::LEVELS).map(|level| {
@@ -202,22 +208,24 @@ impl Surrounding {
 }
 
 /// The other bodies that points of a body are near.
-fn visits(members: &[Member], surroundings: &[Surrounding], body: usize) -> Vec<Visit> {
+fn visits(
+    members: &[Member],
+    surroundings: &[Surrounding],
+    neighbours: &Neighbours,
+    body: usize,
+) -> Vec<Visit> {
     let member = &members[body];
-    let center = member.frame.center();
-    let mut visits = Vec::new();
-    for (source, (other, around)) in members.iter().zip(surroundings).enumerate() {
+    let near = neighbours.touching(Ball {
+        center: member.frame.center(),
+        radius: surroundings[body].radius,
+    });
+    let others = near.into_iter().filter(|&source| source != body);
+    let visits = others.map(|source| {
+        let around = &surroundings[source];
         let beyond = around.radius + around.reach;
-        let distance = (other.frame.center() - center).norm();
-        if source == body || distance > beyond + surroundings[body].radius {
-            continue;
-        }
-        let visit = visit(member, source, other, around, beyond);
-        if !visit.points.is_empty() {
-            visits.push(visit);
-        }
-    }
-    visits
+        visit(member, source, &members[source], around, beyond)
+    });
+    visits.filter(|visit| !visit.points.is_empty()).collect()
 }
 
 fn visit(
@@ -227,7 +235,7 @@ fn visit(
     around: &Surrounding,
     beyond: f64,
 ) -> Visit {
-    let grid = &member.tables.grid;
+    let grid = member.tables.grid();
     let discretization = &other.tables.discretization;
     let beyond = beyond / other.frame.scale();
     let grain = GRAIN * discretization.size();
@@ -285,21 +293,21 @@ fn visit(
 
 impl Visit {
     /// How many numbers all rows together have.
-    fn len(&self, members: &[Member]) -> usize {
+    fn len(&self, members: &[Member]) -> Result<usize, QuadratureError> {
         let tables = &members[self.source].tables;
-        tables
-            .influence
-            .len(&tables.discretization, self.panels.len())
+        let influence = tables.influence()?;
+        Ok(influence.len(&tables.discretization, self.panels.len()))
     }
 
     /// Makes the rows, if they are to be kept.
     fn fill(&mut self, members: &[Member], room: &mut Room) -> Result<(), QuadratureError> {
-        let length = self.len(members);
+        let length = self.len(members)?;
         let Some(rows) = &mut self.rows else {
             return Ok(());
         };
         rows.resize(length, 0.0);
         let tables = &members[self.source].tables;
+        let influence = tables.influence()?;
         let (mut points, mut panels) = (&self.points[..], &self.panels[..]);
         let mut rest = &mut rows[..];
         for ring in &self.rings {
@@ -309,9 +317,9 @@ impl Visit {
             if own.is_empty() {
                 continue;
             }
-            let length = tables.influence.len(&tables.discretization, own.len());
+            let length = influence.len(&tables.discretization, own.len());
             let (rows, others_rows) = std::mem::take(&mut rest).split_at_mut(length);
-            tables.influence.fill(
+            influence.fill(
                 &tables.discretization,
                 tables.weights,
                 on_ring[0].1,
@@ -335,7 +343,7 @@ impl Visit {
     ) -> Result<(), QuadratureError> {
         let member = &members[self.source];
         let tables = &member.tables;
-        let (influence, discretization) = (&tables.influence, &tables.discretization);
+        let (influence, discretization) = (tables.influence()?, &tables.discretization);
         let (mut points, mut panels) = (&self.points[..], &self.panels[..]);
         let (mut finer, mut kept) = (&self.finer[..], self.rows.as_deref());
         for ring in &self.rings {
@@ -368,7 +376,7 @@ impl Visit {
                 let of_points = |panel: u32| {
                     let (panel, strengths) = (panel as usize, &strengths.points);
                     tables
-                        .grid
+                        .grid()
                         .panel_velocity(panel, tables.weights, strengths, at)
                 };
                 let mut better = Vector3::zeros();

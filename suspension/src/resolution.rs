@@ -6,22 +6,25 @@
 
 use std::sync::Arc;
 
-use nalgebra::Vector3;
+use nalgebra::Matrix3;
 
-use super::SuspensionError;
+use super::arrangement::are_coaxial;
+use super::error::SuspensionError;
 use super::check::Miss;
 use super::class::Kind;
+use super::slip::Slip;
 use super::suspension::{Body, Suspension};
 use bodies_of_revolution::Gap;
 use bodies_of_revolution::Meridian;
-use bodies_of_revolution::{GeneratingCurve, Panels};
-use stokes_body::problem::{Problem, ProblemError, Resolution};
+use bodies_of_revolution::{GeneratingCurve, Panels, Shape};
+use stokes_body::resolution::Resolution;
+use stokes_body::discretization::Discretization;
+use stokes_body::linear_flow;
+use stokes_body::surface::SurfaceModes;
 use stokes_body::refinement::{ORDER, first_panels};
 
 /// What of the digits modes and panels have to resolve in a gap: images are weaker the nearer they are.
 const GAP_DIGITS: f64 = 0.75;
-/// The sine of the angle between axes and lines of centres up to which bodies are coaxial.
-const COAXIAL: f64 = 1e-14;
 /// Bisections of one panel at first.
 const DEEPEST: usize = 12;
 /// Most modes.
@@ -32,27 +35,28 @@ const ALIASES: f64 = 8.0;
 
 /// The first resolutions for a tolerance.
 pub(crate) fn first(
-    suspension: &Suspension<'_>,
+    suspension: &Suspension,
     gaps: &[Gap],
     tolerance: f64,
 ) -> Result<Vec<Arc<Resolution>>, SuspensionError> {
     let coaxial = are_coaxial(&suspension.bodies);
-    let mut known: Vec<(Arc<dyn GeneratingCurve>, Arc<Resolution>)> = Vec::new();
+    let mut known: Vec<(Shape, Arc<Resolution>)> = Vec::new();
     let mut resolutions = Vec::with_capacity(suspension.bodies.len());
     for (index, body) in suspension.bodies.iter().enumerate() {
         let at_body = |error| SuspensionError::Curve { body: index, error };
-        let panels = first_panels(&*body.curve, tolerance).map_err(at_body)?;
-        let problem = Problem {
-            slip: body.slip,
-            background: suspension.background.in_frame(&body.frame),
-            ..Problem::new(body.curve.clone())
+        let panels = first_panels(&*body.shape, tolerance).map_err(at_body)?;
+        let gradient = suspension.background.gradient != Matrix3::zeros();
+        let last_exact = if gradient { linear_flow::LAST_MODE } else { 1 };
+        let of_data = match &body.slip {
+            None => last_exact,
+            Some(slip) => {
+                let sampled = Discretization::new(body.shape.clone(), panels.clone(), ORDER)?;
+                let modes = modes_of_slip(slip, &sampled, tolerance);
+                modes
+                    .ok_or(SuspensionError::Velocity { body: index })?
+                    .max(last_exact)
+            }
         };
-        let of_data = problem
-            .modes_for(&panels, tolerance)
-            .map_err(|error| match error {
-                ProblemError::Curve(error) => at_body(error),
-                _ => SuspensionError::Velocity { body: index },
-            })?;
         let facing: Vec<Facing> = gaps
             .iter()
             .filter_map(|gap| Facing::of(gap, index, body))
@@ -64,18 +68,18 @@ pub(crate) fn first(
             listed(in_gaps.fold(of_data.max(8), usize::max))
         };
         let resolution = Resolution {
-            panels: graded(&*body.curve, panels, &facing, tolerance),
+            panels: graded(&*body.shape, panels, &facing, tolerance),
             order: ORDER,
             modes,
         };
         let same = known
             .iter()
-            .find(|(curve, other)| Arc::ptr_eq(curve, &body.curve) && **other == resolution);
+            .find(|(curve, other)| Arc::ptr_eq(curve, &body.shape) && **other == resolution);
         let shared = match same {
             Some((_, shared)) => shared.clone(),
             None => {
                 let shared = Arc::new(resolution);
-                known.push((body.curve.clone(), shared.clone()));
+                known.push((body.shape.clone(), shared.clone()));
                 shared
             }
         };
@@ -84,15 +88,48 @@ pub(crate) fn first(
     Ok(resolutions)
 }
 
-/// Whether all bodies have one axis: their modes do not mix.
-pub(crate) fn are_coaxial(bodies: &[Body<'_>]) -> bool {
-    let axis = bodies[0].frame.axis();
-    let origin = bodies[0].frame.center();
-    bodies.iter().all(|body| {
-        let apart: Vector3<f64> = body.frame.center() - origin;
-        body.frame.axis().cross(&axis).norm() <= COAXIAL
-            && apart.cross(&axis).norm() <= COAXIAL * apart.norm()
-    })
+/// The modes that a slip has, to a tenth of the tolerance; none if it is not finite everywhere.
+fn modes_of_slip(slip: &Slip, discretization: &Discretization, tolerance: f64) -> Option<usize> {
+    let mut modes = 32;
+    loop {
+        let sampled = SurfaceModes::sample(discretization, modes, |x| slip.at(x));
+        if !sampled.largest.is_finite() {
+            return None;
+        }
+        let small = 0.1 * tolerance * sampled.largest;
+        let last = (0..=modes)
+            .rev()
+            .find(|&n| sampled.modes.amplitude(n) > small)
+            .unwrap_or(0);
+        if last < modes - modes / 8 || modes >= MOST_MODES {
+            return Some(last);
+        }
+        modes = (2 * modes).min(MOST_MODES);
+    }
+}
+
+/// The same resolution for all bodies, shared by those of one shape.
+pub(crate) fn uniform(
+    bodies: &[Body],
+    [panels, order, modes]: [usize; 3],
+) -> Result<Vec<Arc<Resolution>>, SuspensionError> {
+    let mut known: Vec<(&Shape, Arc<Resolution>)> = Vec::new();
+    let mut resolutions = Vec::with_capacity(bodies.len());
+    for (index, body) in bodies.iter().enumerate() {
+        let mut shared = known.iter();
+        let shared = match shared.find(|(shape, _)| Arc::ptr_eq(shape, &body.shape)) {
+            Some((_, shared)) => shared.clone(),
+            None => {
+                let panels = Panels::equal_arcs(&*body.shape, panels)
+                    .map_err(|error| SuspensionError::Curve { body: index, error })?;
+                let resolution = Resolution { panels, order, modes };
+                known.push((&body.shape, Arc::new(resolution)));
+                known[known.len() - 1].1.clone()
+            }
+        };
+        resolutions.push(shared);
+    }
+    Ok(resolutions)
 }
 
 /// The least number of modes in the list that is enough: two for each doubling.
@@ -110,7 +147,7 @@ struct Facing {
 }
 
 impl Facing {
-    fn of(gap: &Gap, index: usize, body: &Body<'_>) -> Option<Self> {
+    fn of(gap: &Gap, index: usize, body: &Body) -> Option<Self> {
         let side = gap.bodies.iter().position(|&b| b == index)?;
         let scale = body.frame.scale();
         let at = Meridian::of(&body.frame.point_to_body(gap.points[side]));
@@ -198,7 +235,7 @@ pub(crate) fn refined(
             } = &*kind.resolution;
             let bisected = panels.bisected(|panel| marked[panel]);
             Arc::new(Resolution {
-                panels: bisected.graded_across_joints(&*kind.curve),
+                panels: bisected.graded_across_joints(&*kind.shape),
                 order: *order,
                 modes: if *more_modes {
                     listed(modes + modes / 4 + 1).min(MOST_MODES)
@@ -216,6 +253,24 @@ pub(crate) fn refined(
         None => kind.clone(),
     });
     refined.collect()
+}
+
+/// The kind with some of its panels bisected.
+pub(crate) fn bisected(kind: &Kind, marked: &[bool]) -> Kind {
+    let Resolution {
+        panels,
+        order,
+        modes,
+    } = &*kind.resolution;
+    let panels = panels.bisected(|panel| marked[panel]);
+    Kind {
+        resolution: Arc::new(Resolution {
+            panels: panels.graded_across_joints(&*kind.shape),
+            order: *order,
+            modes: *modes,
+        }),
+        ..kind.clone()
+    }
 }
 
 /// Which panels a body wants bisected, and whether it wants more modes.
@@ -257,7 +312,7 @@ mod tests {
                 order: ORDER,
                 modes,
             }),
-            curve,
+            shape: curve,
             role: Role::Held(Formulation::CombinedField),
         }
     }

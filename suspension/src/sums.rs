@@ -1,8 +1,9 @@
 //! Sums over points, fast where that pays, to the tolerance at hand.
 
+use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use stokes_fmm::{Flow, FmmError, Output, Points, Singularities, StokesSum, Strengths, direct};
+use stokes_fmm::{Flow, FmmError, Output, Points, Singularities, StokesSum, Strengths};
 
 /// The least tolerance of a fast sum, and the largest that is worth having: beyond it sums become no cheaper.
 const TOLERANCES: [f64; 2] = [1e-12, 1e-3];
@@ -14,6 +15,12 @@ const FEW: f64 = 1e8;
 /// What fast sums need that does not depend on the points: made once for each kind and tolerance.
 #[derive(Clone, Default)]
 pub(crate) struct Operators(Arc<Mutex<Vec<Made>>>);
+
+impl fmt::Debug for Operators {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Operators")
+    }
+}
 
 struct Made {
     singularities: Singularities,
@@ -33,7 +40,7 @@ impl Operators {
         let mut made = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let serves = |made: &Made| {
             (made.singularities, made.output) == (singularities, output)
-                && is_near(made.sum.tolerance(), tolerance)
+                && are_alike(made.sum.tolerance(), tolerance)
         };
         let place = match made.iter().position(serves) {
             Some(place) => place,
@@ -52,12 +59,15 @@ impl Operators {
     }
 }
 
-/// Whether so few sources and targets are summed pair by pair.
+/// Whether so few sources and targets are summed pair by pair: the one place where that is decided.
+///
+/// Pair by pair, what belongs to one body can be left out or done exactly. A fast sum counts all, and what is wrong
+/// of it is taken away: that costs digits where points are near each other.
 pub(crate) fn are_few(sources: usize, targets: usize) -> bool {
     sources as f64 * targets as f64 <= FEW
 }
 
-fn is_near(a: f64, b: f64) -> bool {
+fn are_alike(a: f64, b: f64) -> bool {
     (a / b - 1.0).abs() < 0.1
 }
 
@@ -88,8 +98,8 @@ impl Sums {
         }
     }
 
-    /// Lets go of the plan.
-    pub fn rest(&mut self) {
+    /// Frees the plan.
+    pub fn forget_plan(&mut self) {
         self.planned = None;
     }
 
@@ -103,11 +113,7 @@ impl Sums {
         let [least, largest] = TOLERANCES;
         let steps = (tolerance / self.best).log(STEP).floor().max(0.0);
         let tolerance = (self.best * STEP.powf(steps)).clamp(least, largest);
-        let targets = points.targets.unwrap_or(points.sources);
-        if are_few(points.sources.len(), targets.len()) {
-            return direct::sum(points.sources, strengths, targets, self.output, None);
-        }
-        let serves = |sum: &&StokesSum| is_near(sum.tolerance(), tolerance);
+        let serves = |sum: &&StokesSum| are_alike(sum.tolerance(), tolerance);
         if let Some(sum) = self.planned.as_ref().filter(serves) {
             return sum.apply(strengths);
         }

@@ -1,27 +1,68 @@
-//! Spheres look the same from all sides: the axis of their modes may point anywhere, and best at the nearest neighbour. What gathers in a gap is then
-//! about the axis, where panels resolve it and a few modes do.
+//! How bodies lie: the gaps between them, and the axes that are chosen for spheres.
+//!
+//! A sphere looks the same from all sides, so the axis of its modes may point anywhere. It is aligned with the nearest
+//! neighbour: then the traction that gathers in the gap is around the axis, where panels and a few modes resolve it.
 
 use nalgebra::{Unit, Vector3};
 
-use super::resolution::are_coaxial;
+use bodies_of_revolution::{Frame, Gap, GeneratingCurve, Placed, gaps};
+
+use super::error::SuspensionError;
 use super::suspension::Body;
-use bodies_of_revolution::Frame;
-use bodies_of_revolution::Gap;
-use bodies_of_revolution::GeneratingCurve;
 
 /// Relative differences of radii, and of directions, that are rounding.
 const ROUNDING: f64 = 1e-14;
 /// The sine of the angle up to which the nearest point is on the line of centres: it is known no better.
 const ON_LINE: f64 = 1e-6;
 
+/// The sine of the angle between axes and lines of centres up to which bodies are coaxial.
+const COAXIAL: f64 = 1e-14;
+/// Gaps of so many sizes of a body matter to its resolution.
+pub(crate) const REACH: f64 = 1.0;
+/// Gaps below so many sizes of the smaller body are narrow.
+const NARROW: f64 = 0.2;
+
+/// The gaps between bodies that are no farther apart than `reach` sizes; an error if any are not apart.
+pub(crate) fn gaps_within(bodies: &[Body], reach: f64) -> Result<Vec<Gap>, SuspensionError> {
+    let placed: Vec<Placed<'_>> = (bodies.iter())
+        .map(|body| Placed {
+            curve: &*body.shape,
+            frame: body.frame,
+            reach: reach * body.size(),
+        })
+        .collect();
+    let gaps = gaps(&placed)?;
+    gaps.iter().try_for_each(|gap| gap.check(0.0))?;
+    Ok(gaps)
+}
+
+/// Whether a gap between bodies is narrow.
+pub(crate) fn is_narrow(bodies: &[Body], gaps: &[Gap]) -> bool {
+    gaps.iter().any(|gap| {
+        let sizes = gap.bodies.map(|body| bodies[body].size());
+        gap.distance < NARROW * sizes[0].min(sizes[1])
+    })
+}
+
+/// Whether all bodies have one axis: their modes do not mix.
+pub(crate) fn are_coaxial(bodies: &[Body]) -> bool {
+    let axis = bodies[0].frame.axis();
+    let origin = bodies[0].frame.center();
+    bodies.iter().all(|body| {
+        let apart: Vector3<f64> = body.frame.center() - origin;
+        body.frame.axis().cross(&axis).norm() <= COAXIAL
+            && apart.cross(&axis).norm() <= COAXIAL * apart.norm()
+    })
+}
+
 /// The bodies with the axes of spheres towards the nearest neighbour; those with a slip stay, for it is given in their frame.
-pub(crate) fn facing_neighbours<'a>(bodies: &[Body<'a>], gaps: &[Gap]) -> Vec<Body<'a>> {
+pub(crate) fn facing_neighbours(bodies: &[Body], gaps: &[Gap]) -> Vec<Body> {
     let mut facing = bodies.to_vec();
     if are_coaxial(bodies) {
         return facing;
     }
     for (index, body) in facing.iter_mut().enumerate() {
-        if body.slip.is_some() || !is_sphere(&*body.curve) {
+        if body.slip.is_some() || !is_sphere(&*body.shape) {
             continue;
         }
         let mine = gaps.iter().filter(|gap| gap.bodies.contains(&index));
@@ -37,7 +78,7 @@ pub(crate) fn facing_neighbours<'a>(bodies: &[Body<'a>], gaps: &[Gap]) -> Vec<Bo
 }
 
 /// From a body's centre to the point nearest to its neighbour.
-fn direction(bodies: &[Body<'_>], gap: &Gap, index: usize) -> Unit<Vector3<f64>> {
+fn direction(bodies: &[Body], gap: &Gap, index: usize) -> Unit<Vector3<f64>> {
     let side = usize::from(gap.bodies[1] == index);
     let center = bodies[index].frame.center();
     let between = Unit::new_normalize(bodies[gap.bodies[1 - side]].frame.center() - center);
@@ -49,7 +90,7 @@ fn direction(bodies: &[Body<'_>], gap: &Gap, index: usize) -> Unit<Vector3<f64>>
     }
 }
 
-fn is_sphere(curve: &dyn GeneratingCurve) -> bool {
+pub(crate) fn is_sphere(curve: &dyn GeneratingCurve) -> bool {
     let ends = curve.breakpoints();
     let (first, last) = (ends[0], ends[ends.len() - 1]);
     let radius = |k: u32| {
@@ -69,6 +110,7 @@ mod tests {
     use super::*;
     use crate::suspension::Suspension;
     use bodies_of_revolution::Spheroid;
+    use crate::slip::Slip;
     use stokes_body::progress::Silent;
 
     #[test]
@@ -85,16 +127,14 @@ mod tests {
             let center = Point3::origin() + distance * Vector3::new(2.0, 1.0, -2.0) / 3.0;
             Body::new(shapes[shape].clone(), Frame::along(center, axis))
         };
-        let gaps =
-            |bodies: &[Body<'_>]| Suspension::new(bodies.to_vec()).gaps(1.0, &Silent).unwrap();
+        let gaps = |bodies: &[Body]| gaps_within(bodies, 1.0).unwrap();
         let pair = [at(0, 0.0), at(1, 1.8)];
         assert!(!are_coaxial(&pair));
         let turned = facing_neighbours(&pair, &gaps(&pair));
         assert!(are_coaxial(&turned));
         // The rod stays as it is, and so does a sphere that is told how to slip.
         let mut mixed = [at(2, 0.0), at(1, 2.0), at(0, -2.5)];
-        let slip = |x: Vector3<f64>| x.cross(&Vector3::z());
-        mixed[2].slip = Some(&slip);
+        mixed[2].slip = Some(Slip::new(|x: Vector3<f64>| x.cross(&Vector3::z())));
         let turned = facing_neighbours(&mixed, &gaps(&mixed));
         let stays = |i: usize| turned[i].frame == mixed[i].frame;
         assert_eq!([stays(0), stays(1), stays(2)], [true, false, true]);

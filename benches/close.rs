@@ -6,6 +6,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use axistokes::body::{DirichletSolver, Discretization, Formulation, Stokeslet, SurfaceModes};
 use axistokes::geometry::curve::GeneratingCurve;
 use axistokes::nalgebra::{Point3, Vector3};
 use axistokes::*;

@@ -12,11 +12,12 @@
 use std::error::Error;
 use std::sync::Arc;
 
-use axistokes::multibody::suspension::{Answer, Suspension};
+use axistokes::body::Stokeslet;
 use axistokes::nalgebra::{Point3, Unit, Vector3};
+use axistokes::suspension::{Levels, SolveError};
 use axistokes::{
-    Body, Frame, GeneratingCurve, Motion, Panels, Resolution, RigidMotion, Silent, Spheroid,
-    Stokeslet, Wrench,
+    Accuracy, Answer, Body, Frame, GeneratingCurve, Motion, Options, Panels, Resolution,
+    RigidMotion, Slip, Solver, Spheroid, Suspension, SuspensionError, Wrench,
 };
 
 const SPACING: f64 = 2.4;
@@ -28,8 +29,7 @@ const SHAPES: usize = 256;
 const ONE_LEVEL: usize = 100;
 
 type ThesisRow = (usize, usize, f64, f64, Option<(usize, f64)>, f64, f64);
-type Velocity<'v> = dyn Fn(Vector3<f64>) -> Vector3<f64> + Sync + 'v;
-type Question<'a> = (Vec<Body<'a>>, Vec<Arc<Resolution>>);
+type Question = (Vec<Body>, Vec<Arc<Resolution>>);
 
 /// The thesis's rows: threads, bodies, T_ker, T_inv, n_op, T_near, T_fmm, absolute error; none where it did not converge.
 const THESIS: [ThesisRow; 18] = [
@@ -90,6 +90,21 @@ fn main() -> Result<(), Box<dyn Error>> {
             Ok(())
         }
     }
+}
+
+/// The answer, also if it misses its tolerance.
+fn answer(suspension: &Suspension, options: Options) -> Result<Answer, SuspensionError> {
+    Solver::new(options)
+        .solve(suspension)
+        .or_else(SolveError::answer)
+}
+
+/// Options for given resolutions.
+fn given(resolutions: &[Arc<Resolution>], tolerance: f64) -> Options {
+    Options::new(Accuracy::Resolutions {
+        of_bodies: resolutions.to_vec(),
+        tolerance,
+    })
 }
 
 fn random(chance: &mut fastrand::Rng) -> Vector3<f64> {
@@ -160,16 +175,16 @@ fn table(fewest: usize, most: usize) -> Result<(), Box<dyn Error>> {
             let (answer, error) = pool
                 .install(|| known_flow(bodies, None))
                 .map_err(|e| e.to_string())?;
-            let t = answer.timings;
+            let t = answer.statistics.timings;
             println!(
                 "{threads:7} {bodies:6} | {thesis} | {:6.2} {:6.2} {:5} {:6.2} {:6.2} {error:8.1e}  {:8.1e} {:5}",
                 t.assemble,
                 t.factor,
-                answer.iteration.products,
+                answer.statistics.iteration.products,
                 t.near + t.iterate - t.sum,
                 t.sum,
                 answer.error_estimate,
-                answer.iteration.iterations,
+                answer.statistics.iteration.iterations,
             );
         }
     }
@@ -180,7 +195,10 @@ fn chosen(count: usize, tolerance: f64) -> Result<(), Box<dyn Error>> {
     let (answer, error) = known_flow(count, Some(tolerance))?;
     println!(
         "{count} bodies to {tolerance:.0e}: {} points, absolute error {error:.1e}, estimated {:.1e} of the largest speed {:.3}; {:?}",
-        answer.points, answer.error_estimate, answer.largest_speed, answer.timings
+        answer.statistics.points,
+        answer.error_estimate,
+        answer.largest_speed,
+        answer.statistics.timings
     );
     Ok(())
 }
@@ -198,17 +216,16 @@ fn known_flow(count: usize, tolerance: Option<f64>) -> Result<(Answer, f64), Str
         .collect();
     let exact =
         |x: Vector3<f64>| -> Vector3<f64> { stokeslets.iter().map(|s| s.velocity(x)).sum() };
-    let on_body = |frame: &Frame, x: Vector3<f64>| {
-        frame.vector_to_body(exact(frame.point_to_lab(x.into()).coords))
-    };
-    let on_body = &on_body;
-    let slips: Vec<Box<Velocity<'_>>> = frames
-        .iter()
-        .map(|&frame| Box::new(move |x| on_body(&frame, x)) as Box<_>)
-        .collect();
+    let slips = frames.iter().map(|&frame| {
+        let stokeslets = stokeslets.clone();
+        Slip::new(move |x| {
+            let x = frame.point_to_lab(x.into()).coords;
+            frame.vector_to_body(stokeslets.iter().map(|s| s.velocity(x)).sum())
+        })
+    });
     let mut bodies = Vec::new();
     let (mut shapes, mut resolutions) = (Vec::new(), Vec::new());
-    for (frame, slip) in frames.iter().zip(&slips) {
+    for (frame, slip) in frames.iter().zip(slips) {
         if bodies.len() < SHAPES {
             let other = 0.5 + 0.5 * chance.f64();
             let axes = if chance.bool() {
@@ -224,7 +241,7 @@ fn known_flow(count: usize, tolerance: Option<f64>) -> Result<(Answer, f64), Str
             resolutions.push(resolutions[bodies.len() % SHAPES].clone());
         }
         bodies.push(Body {
-            slip: Some(&**slip),
+            slip: Some(slip),
             ..Body::new(shapes[bodies.len() % SHAPES].clone(), *frame)
         });
     }
@@ -240,16 +257,13 @@ fn known_flow(count: usize, tolerance: Option<f64>) -> Result<(Answer, f64), Str
     .filter(outside)
     .take(200)
     .collect();
-    let suspension = Suspension {
-        targets: &targets,
-        ..Suspension::new(bodies)
+    let suspension = Suspension::new(bodies).with_probes(targets.clone());
+    let options = match tolerance {
+        None => given(&resolutions, 1e-8),
+        Some(tolerance) => Options::tolerance(tolerance),
     };
-    let answer = match tolerance {
-        None => suspension.at_resolutions(&resolutions, 1e-8, &Silent),
-        Some(tolerance) => suspension.to_tolerance(tolerance, &Silent),
-    };
-    let answer = answer.map_err(|error| error.to_string())?;
-    let errors = targets.iter().zip(&answer.targets);
+    let answer = answer(&suspension, options).map_err(|error| error.to_string())?;
+    let errors = targets.iter().zip(&answer.probes);
     let error = errors
         .map(|(x, at)| (at.velocity - exact(x.coords)).amax())
         .fold(0.0, f64::max);
@@ -257,11 +271,11 @@ fn known_flow(count: usize, tolerance: Option<f64>) -> Result<(Answer, f64), Str
 }
 
 /// Rods and discs in turn; free under random forces and torques, or held and moved at random.
-fn rods_and_discs<'a>(
+fn rods_and_discs(
     count: usize,
     free: bool,
     points: [usize; 3],
-) -> Result<Question<'a>, Box<dyn Error>> {
+) -> Result<Question, Box<dyn Error>> {
     let mut chance = fastrand::Rng::with_seed(1);
     let shapes: [Shared; 2] = [
         Arc::new(Spheroid::new(1.0, 0.5)?),
@@ -305,11 +319,13 @@ fn iterations(sides: &[usize]) -> Result<(), Box<dyn Error>> {
                 break;
             }
             let (bodies, resolutions) = rods_and_discs(count, free, THESIS_POINTS)?;
-            let mut suspension = Suspension::new(bodies);
-            suspension.options.two_level = two_level;
-            suspension.options.residual = Some(1e-8);
-            let answer = suspension.at_resolutions(&resolutions, 1e-6, &Silent)?;
-            counts.push(answer.iteration.iterations);
+            let mut options = given(&resolutions, 1e-6);
+            if !two_level {
+                options.levels = Levels::One;
+            }
+            options.residual = Some(1e-8);
+            let answer = answer(&Suspension::new(bodies), options)?;
+            counts.push(answer.statistics.iteration.iterations);
         }
         println!(
             "{count:6}  {:8}  {:22}  {:>9}",
@@ -325,10 +341,10 @@ fn iterations(sides: &[usize]) -> Result<(), Box<dyn Error>> {
 fn product(count: usize, tolerance: f64) -> Result<(), Box<dyn Error>> {
     for free in [true, false] {
         let (bodies, resolutions) = rods_and_discs(count, free, THESIS_POINTS)?;
-        let mut suspension = Suspension::new(bodies);
-        suspension.options.loosest_product = 0.0;
-        suspension.options.residual = Some(25.0 * tolerance);
-        let answer = suspension.at_resolutions(&resolutions, 25.0 * tolerance, &Silent)?;
+        let mut options = given(&resolutions, 25.0 * tolerance);
+        options.loosest_product = 0.0;
+        options.residual = Some(25.0 * tolerance);
+        let answer = answer(&Suspension::new(bodies), options)?.statistics;
         let (t, products) = (answer.timings, answer.iteration.products as f64);
         println!(
             "{count} {} bodies, {} points, {products} products to {tolerance:.0e}: {:.3} s each, {:.3} times the sum's {:.3} s; {:.0} unknowns per second and iteration",
@@ -352,20 +368,20 @@ fn solve(count: usize, tolerance: f64, points: [usize; 3]) -> Result<(), Box<dyn
     let (bodies, resolutions) = rods_and_discs(count, true, by_hand)?;
     let suspension = Suspension::new(bodies);
     let start = std::time::Instant::now();
-    let answer = if points[0] == 0 {
-        suspension.to_tolerance(tolerance, &Silent)?
+    let options = if points[0] == 0 {
+        Options::tolerance(tolerance)
     } else {
-        suspension.at_resolutions(&resolutions, tolerance, &Silent)?
+        given(&resolutions, tolerance)
     };
+    let answer = answer(&suspension, options)?;
     let seconds = start.elapsed().as_secs_f64();
     let peak = peak_memory().unwrap_or(f64::NAN);
-    let Answer {
-        iteration, timings, ..
-    } = &answer;
+    let statistics = &answer.statistics;
+    let (iteration, timings) = (&statistics.iteration, &statistics.timings);
     println!(
         "{count} free bodies, {} points, {} unknowns: {seconds:.1} s, peak memory {peak:.2} GiB ({:.2} MiB per body)",
-        answer.points,
-        answer.unknowns,
+        statistics.points,
+        statistics.unknowns,
         peak * 1024.0 / count as f64,
     );
     println!(
@@ -378,9 +394,9 @@ fn solve(count: usize, tolerance: f64, points: [usize; 3]) -> Result<(), Box<dyn
     );
     println!(
         "{:.0} unknowns per second and iteration; {timings:?}; near points and bytes {:?}; {} classes",
-        answer.unknowns as f64 * iteration.products as f64 / timings.iterate,
-        answer.near,
-        answer.classes
+        statistics.unknowns as f64 * iteration.products as f64 / timings.iterate,
+        (statistics.near_points, statistics.near_bytes),
+        statistics.classes
     );
     Ok(())
 }
@@ -389,8 +405,8 @@ fn solve(count: usize, tolerance: f64, points: [usize; 3]) -> Result<(), Box<dyn
 fn error(count: usize, tolerance: f64) -> Result<(), Box<dyn Error>> {
     let (bodies, resolutions) = rods_and_discs(count, true, THESIS_POINTS)?;
     let suspension = Suspension::new(bodies);
-    let by_hand = suspension.at_resolutions(&resolutions, 1e-6, &Silent)?;
-    let better = suspension.to_tolerance(tolerance, &Silent)?;
+    let by_hand = answer(&suspension, given(&resolutions, 1e-6))?;
+    let better = answer(&suspension, Options::tolerance(tolerance))?;
     let apart = by_hand.bodies.iter().zip(&better.bodies).map(|(a, b)| {
         let turning = a.motion.angular_velocity - b.motion.angular_velocity;
         (a.motion.velocity - b.motion.velocity)

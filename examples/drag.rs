@@ -7,10 +7,9 @@ use std::error::Error;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use axistokes::body::{DirichletSolver, Discretization, Formulation};
 use axistokes::nalgebra::Vector3;
-use axistokes::{
-    DirichletSolver, Discretization, Formulation, Panels, RigidMotion, Silent, Spheroid,
-};
+use axistokes::{Panels, RigidMotion, Silent, Spheroid};
 
 /// Tolerance for the panels: how well they resolve the curve.
 const TOLERANCE: f64 = 1e-10;

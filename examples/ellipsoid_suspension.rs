@@ -3,21 +3,24 @@
 //!
 //!     cargo run --release --example ellipsoid_suspension
 //!
-//! writes to `ellipsoids/` (or `--directory`): the case, as `axistokes solve` would read it; its report; surfaces and middle plane for ParaView; a
-//! picture of the streamlines. `--side 3` has 27 of them, `--free` lets them swim, `--tolerance 1e-6` is more accurate.
+//! writes to `ellipsoids/` (or `--directory`): motions and forces of all bodies as a table; surfaces and middle plane for
+//! ParaView; a picture of the streamlines. `--side 3` has 27 of them, `--free` lets them swim, `--tolerance 1e-6` is more accurate.
 
 use std::error::Error;
 use std::fmt::Write;
 use std::fs;
 use std::path::PathBuf;
 
-use axistokes::case::Case;
+use axistokes::nalgebra::{Point3, Vector3};
 use axistokes::output::picture::{Quantity, picture};
-use axistokes::output::table;
-use axistokes::output::vtk::{Surface, plane_file};
-use axistokes::plane::{Plane, PlaneFlow};
+use axistokes::output::vtk::{Mesh, plane_file};
+use axistokes::plane::section::sections;
+use axistokes::plane::{Plane, PlaneFlow, PlaneOptions, PlaneOrientation};
 use axistokes::progress::Progress;
-use axistokes::solve::{SolvedBody, solve};
+use axistokes::suspension::SolveError;
+use axistokes::{
+    Answer, Body, CurveError, GeneratingCurve, Options, Slip, Solver, Spheroid, Suspension,
+};
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -48,23 +51,21 @@ const AZIMUTHS: usize = 48;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments = Arguments::parse();
-    let text = case(&arguments);
-    let case = Case::parse(&text, "ellipsoids.toml")?;
+    let suspension = suspension(&arguments)?;
     let bar = Bar::new();
 
-    let solved = solve(&case, &bar)?;
-    let sizes: Vec<f64> = solved.bodies.iter().map(SolvedBody::size).collect();
-    let plane = Plane::of_case(&case, &sizes);
-    let flow = PlaneFlow::sample(&solved, plane, &bar)?;
-    let drawn = picture(&flow, &solved.sections(&plane)?, Quantity::Speed)?;
-    let surfaces = Surface::of(&solved, |_| AZIMUTHS, &bar)?.file()?;
-    let report = table(&case, &solved.report, true);
+    let mut solver = Solver::new(Options::tolerance(arguments.tolerance));
+    let answer = solver.solve_with(&suspension, None, &bar);
+    let answer = answer.or_else(SolveError::answer)?;
+    let plane = middle(&suspension, arguments.side);
+    let flow = PlaneFlow::sample(&answer.flow, plane, &bar)?;
+    let drawn = picture(&flow, &sections(&answer.flow, &plane)?, Quantity::Speed)?;
+    let surfaces = Mesh::of(&answer.flow, |_| AZIMUTHS, &bar)?.file()?;
     bar.0.finish_and_clear();
 
     fs::create_dir_all(&arguments.directory)?;
     let files = [
-        ("ellipsoids.toml", text.into_bytes()),
-        ("report.txt", report.into_bytes()),
+        ("bodies.csv", bodies(&suspension, &answer).into_bytes()),
         ("bodies.vtu", surfaces),
         ("plane.vts", plane_file(&flow)?),
         ("streamlines.svg", drawn.into_bytes()),
@@ -72,26 +73,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, bytes) in files {
         fs::write(arguments.directory.join(name), bytes)?;
     }
-    print!("{}", table(&case, &solved.report, false));
+    print!("{}", summary(&answer));
     println!("written to {}", arguments.directory.display());
     Ok(())
 }
 
-/// The case file.
-fn case(arguments: &Arguments) -> String {
+/// The bodies.
+fn suspension(arguments: &Arguments) -> Result<Suspension, CurveError> {
     let mut chance = fastrand::Rng::with_seed(arguments.seed);
     let side = arguments.side;
-    let width = SPACING * f64::from(side);
-    let middle = SPACING * f64::from(side / 2);
-    let center = 0.5 * SPACING * f64::from(side - 1);
-    let mut text = format!(
-        "# {} ellipsoids of random shape and direction, with slip from pole to pole.\n\n[accuracy]\ntolerance = {:e}\n\n\
-         [plane]\ncenter = [{center}, {middle}, {center}]\nnormal = [0.0, 1.0, 0.0]\nsize = {width}\npoints = 301\n",
-        side.pow(3),
-        arguments.tolerance,
-    );
     let places = (0..side.pow(3)).map(|i| [i % side, i / side % side, i / side / side]);
-    for (number, place) in (1..).zip(places) {
+    let body = |place: [u32; 3]| {
         // One half axis is 1, the other shorter: rods and discs.
         let shorter = 0.5 + 0.5 * chance.f64();
         let [polar, equatorial] = if chance.bool() {
@@ -99,22 +91,75 @@ fn case(arguments: &Arguments) -> String {
         } else {
             [shorter, 1.0]
         };
-        let center = place.map(|k| SPACING * f64::from(k));
-        let axis = direction(&mut chance);
-        let motion = if arguments.free {
-            "force = [0.0, 0.0, 0.0]\n"
+        let shape = Spheroid::new(polar, equatorial)?.shape();
+        let body = if arguments.free {
+            Body::free(&shape)
         } else {
-            ""
+            Body::held(&shape)
         };
+        Ok(body
+            .at(place.map(|k| SPACING * f64::from(k)))
+            .along(direction(&mut chance))
+            .with_slip(Slip::pole_to_pole(polar, equatorial, 10.0)))
+    };
+    let bodies: Vec<Body> = places.map(body).collect::<Result<_, CurveError>>()?;
+    Ok(Suspension::new(bodies))
+}
+
+/// The plane through the middle layer of bodies.
+fn middle(suspension: &Suspension, side: u32) -> Plane {
+    let center = 0.5 * SPACING * f64::from(side - 1);
+    let options = PlaneOptions {
+        center: Some(Point3::new(center, SPACING * f64::from(side / 2), center)),
+        orientation: Some(PlaneOrientation::Normal(Vector3::y())),
+        size: Some([SPACING * f64::from(side); 2]),
+        points: Some([301; 2]),
+    };
+    Plane::of(suspension, &options)
+}
+
+/// Every body on a line.
+fn bodies(suspension: &Suspension, answer: &Answer) -> String {
+    let mut text = "x,y,z,axis x,axis y,axis z,velocity x,velocity y,velocity z,angular velocity x,\
+                    angular velocity y,angular velocity z,force x,force y,force z,torque x,torque y,torque z\n"
+        .to_owned();
+    for (body, found) in suspension.bodies.iter().zip(&answer.bodies) {
+        let (frame, motion, wrench) = (&body.frame, &found.motion, &found.wrench);
+        let vectors = [
+            frame.center().coords,
+            *frame.axis(),
+            motion.velocity,
+            motion.angular_velocity,
+            wrench.force,
+            wrench.torque,
+        ];
+        let numbers = vectors.iter().flat_map(|v| v.iter());
+        let cells: Vec<String> = numbers.map(|x| format!("{x:e}")).collect();
         // Writing to a string does not fail.
-        let _ = write!(
-            text,
-            "\n[shapes.e{number}]\nkind = \"spheroid\"\npolar = {polar}\nequatorial = {equatorial}\n\n\
-             [[bodies]]\nshape = \"e{number}\"\ncenter = {center:?}\naxis = {axis:?}\n{motion}\
-             slip = {{ kind = \"pole-to-pole\", speed = 10.0 }}\n"
-        );
+        let _ = writeln!(text, "{}", cells.join(","));
     }
     text
+}
+
+fn summary(answer: &Answer) -> String {
+    let (statistics, t) = (&answer.statistics, &answer.statistics.timings);
+    format!(
+        "{answer}: relative to the largest speed, {:.3}\n\
+         {} unknowns, {} points, {} iterations, {} rounds of refinement\n\
+         seconds: assemble {:.1}, factor {:.1}, near rows {:.1}, iterate {:.1}, \
+         error estimate {:.1}, coarser rounds {:.1}\n",
+        answer.largest_speed,
+        statistics.unknowns,
+        statistics.points,
+        statistics.iterations,
+        statistics.rounds,
+        t.assemble,
+        t.factor,
+        t.near,
+        t.iterate,
+        t.estimate,
+        t.refine,
+    )
 }
 
 /// Every direction as likely as any other.

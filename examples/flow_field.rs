@@ -6,39 +6,30 @@
 
 use std::error::Error;
 
-use axistokes::case::Case;
 use axistokes::nalgebra::Vector3;
 use axistokes::output::picture::{Quantity, picture};
-use axistokes::plane::{Plane, PlaneFlow};
-use axistokes::progress::Silent;
-use axistokes::solve::solve;
-
-const CASE: &str = "
-    [shapes.lens]
-    kind = 'spheroid'
-    polar = 1.0
-    equatorial = 0.4
-
-    [[bodies]]
-    shape = 'lens'
-    axis = [1.0, 0.0, 0.8]
-    velocity = [-1.0, 0.0, 0.0]
-
-    [plane]
-    size = [6.0, 4.0]
-    points = [241, 161]
-";
+use axistokes::plane::section::sections;
+use axistokes::plane::{Plane, PlaneFlow, PlaneOptions};
+use axistokes::{Body, GeneratingCurve, Options, Silent, Solver, Spheroid, Suspension};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).unwrap_or("flow.svg".into());
-    let case = Case::parse(CASE, "flow_field")?;
-    let solved = solve(&case, &Silent)?;
+    let velocity = Vector3::new(-1.0, 0.0, 0.0);
+    let lens = Spheroid::new(1.0, 0.4)?.shape();
+    let tilted = Body::held(&lens).along([1.0, 0.0, 0.8]).moving(velocity);
+    let suspension = Suspension::new([tilted]);
+    let flow = Solver::new(Options::tolerance(1e-8))
+        .solve(&suspension)?
+        .flow;
 
-    // Of the body's half length only the size of the plane depends, and that is given.
-    let plane = Plane::of_case(&case, &[1.0]);
-    let velocity = Vector3::from(solved.report.bodies[0].velocity);
-    let flow = PlaneFlow::sample(&solved, plane, &Silent)?.relative_to(velocity);
-    let drawn = picture(&flow, &solved.sections(&plane)?, Quantity::Speed)?;
+    let options = PlaneOptions {
+        size: Some([6.0, 4.0]),
+        points: Some([241, 161]),
+        ..PlaneOptions::default()
+    };
+    let plane = Plane::of(&suspension, &options);
+    let in_plane = PlaneFlow::sample(&flow, plane, &Silent)?.relative_to(velocity);
+    let drawn = picture(&in_plane, &sections(&flow, &plane)?, Quantity::Speed)?;
     std::fs::write(&path, drawn)?;
     println!("written to {path}");
     Ok(())

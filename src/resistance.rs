@@ -4,7 +4,7 @@ use crate::case::{Accuracy, Case};
 use crate::output::{ResistanceReport, ShapeReport};
 use crate::solve::SolveError;
 use bodies_of_revolution::Panels;
-use stokes_body::problem::ProblemError;
+use stokes_body::error::BodyError;
 use stokes_body::progress::Progress;
 use stokes_body::resistance::RigidBodyMatrices;
 
@@ -27,13 +27,13 @@ pub fn resistance(case: &Case, progress: &dyn Progress) -> Result<ResistanceRepo
                 RigidBodyMatrices::to_tolerance(curve, tolerance, progress)
             }
             Accuracy::ByHand { panels, order, .. } => Panels::equal_arcs(&*curve, panels)
-                .map_err(ProblemError::from)
+                .map_err(BodyError::from)
                 .and_then(|panels| {
                     RigidBodyMatrices::at_resolution(curve.clone(), panels, order, progress)
                 }),
         };
         let matrices = matrices.map_err(|error| match error {
-            ProblemError::Curve(error) => at_shape(&error),
+            BodyError::Curve(error) => at_shape(&error),
             other => SolveError::Failed(other.to_string()),
         })?;
         shapes.push(ShapeReport::new(name, &matrices, case.viscosity));

@@ -51,3 +51,14 @@ mod storage;
 pub mod stresslet;
 pub mod surface;
 pub mod surface_grid;
+
+pub use dirichlet::{DirichletSolver, Formulation};
+pub use discretization::Discretization;
+pub use error::BodyError;
+pub use flow::{Flow, FlowError};
+pub use kernel::{FlowAt, FlowGradientAt, Stokeslet};
+pub use linear_flow::LinearFlow;
+pub use mobility::MobilitySolver;
+pub use resistance::RigidBodyMatrices;
+pub use resolution::Resolution;
+pub use surface::SurfaceModes;

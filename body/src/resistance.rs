@@ -21,8 +21,8 @@ use panel_quadrature::QuadratureError;
 
 use super::dirichlet::{DirichletSolver, Formulation};
 use super::discretization::Discretization;
-use super::mobility::MobilitySolver;
 use super::error::BodyError;
+use super::mobility::MobilitySolver;
 use super::refinement::{
     EXTRA_ORDER, ORDER, Round, error_estimate, first_panels, refine, unresolved_panels,
 };

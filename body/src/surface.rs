@@ -227,10 +227,11 @@ impl SurfaceModes {
         let mut failed = None;
         let turned = |x: Vector3<f64>| {
             let value = self.at_point(discretization, (rotation * x).into());
-            rotation.inverse() * value.unwrap_or_else(|error| {
-                failed = Some(error);
-                Vector3::zeros()
-            })
+            rotation.inverse()
+                * value.unwrap_or_else(|error| {
+                    failed = Some(error);
+                    Vector3::zeros()
+                })
         };
         let turned = Self::sample(discretization, self.modes - 1, turned).modes;
         failed.map_or(Ok(turned), Err)

@@ -1,6 +1,6 @@
 //! How accurate the answer must be, or how finely the shapes are cut.
 
-use stokes_body::problem::matrix_entries;
+use stokes_body::resolution::matrix_entries;
 
 use super::CaseError;
 use super::node::Node;

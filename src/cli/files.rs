@@ -3,13 +3,14 @@
 use super::args::Solve;
 use super::failure::Failure;
 use super::folder::Folder;
-use axistokes::case::{Case, PlaneFrame};
-use axistokes::nalgebra::Vector3;
+use axistokes::case::Case;
 use axistokes::output::picture::{PictureError, Quantity, picture};
-use axistokes::output::vtk::{Surface, VtkError, plane_file};
-use axistokes::plane::{Plane, PlaneFlow};
+use axistokes::output::vtk::{Mesh, VtkError, plane_file};
+use axistokes::plane::PlaneFlow;
+use axistokes::plane::section::sections;
 use axistokes::progress::Progress;
-use axistokes::solve::{Solved, SolvedBody};
+use axistokes::solve::Solved;
+use axistokes::{BodyFlow, SuspensionError};
 use std::ffi::OsStr;
 use std::path::Path;
 
@@ -55,7 +56,7 @@ impl Files {
         if self.picture.is_none() && self.vtk.is_none() {
             return Ok(String::new());
         }
-        let flow = plane_flow(case, solved, progress)?;
+        let flow = plane_flow(solved, progress)?;
         let mut written = Vec::new();
         // Everything is made before anything is written.
         if let Some((folder, name, quantity)) = &self.picture {
@@ -99,18 +100,13 @@ fn picture_file(path: &Path, quantity: Quantity) -> Result<(Folder, String, Quan
 }
 
 /// The flow in the plane of the case, seen by whom it says.
-fn plane_flow(case: &Case, solved: &Solved, progress: &dyn Progress) -> Result<PlaneFlow, Failure> {
-    let sizes: Vec<f64> = solved.bodies.iter().map(SolvedBody::size).collect();
-    let flow = PlaneFlow::sample(solved, Plane::of_case(case, &sizes), progress)?;
-    Ok(match case.plane.frame {
-        PlaneFrame::Laboratory => flow,
-        PlaneFrame::Body => flow.relative_to(Vector3::from(solved.report.bodies[0].velocity)),
-    })
+fn plane_flow(solved: &Solved, progress: &dyn Progress) -> Result<PlaneFlow, Failure> {
+    let flow = PlaneFlow::sample(&solved.answer.flow, solved.plane, progress)?;
+    Ok(flow.relative_to(solved.observer))
 }
 
 fn draw(solved: &Solved, flow: &PlaneFlow, quantity: Quantity) -> Result<String, Failure> {
-    let sections = solved
-        .sections(&flow.plane)
+    let sections = sections(&solved.answer.flow, &flow.plane)
         .map_err(|error| Failure::Other(error.to_string()))?;
     picture(flow, &sections, quantity).map_err(Failure::from)
 }
@@ -126,8 +122,8 @@ fn vtk_files(
         .file_stem()
         .and_then(OsStr::to_str)
         .unwrap_or("case");
-    let azimuths = |body: &SolvedBody| (4 * body.modes()).clamp(AZIMUTHS[0], AZIMUTHS[1]);
-    let surfaces = Surface::of(solved, azimuths, progress)?.file()?;
+    let azimuths = |body: &BodyFlow| (4 * body.disturbance.modes()).clamp(AZIMUTHS[0], AZIMUTHS[1]);
+    let surfaces = Mesh::of(&solved.answer.flow, azimuths, progress)?.file()?;
     Ok(vec![
         (format!("{stem}-bodies.vtu"), surfaces),
         (format!("{stem}-plane.vts"), plane_file(flow)?),
@@ -146,5 +142,14 @@ impl From<PictureError> for Failure {
 impl From<VtkError> for Failure {
     fn from(error: VtkError) -> Self {
         Self::Other(error.to_string())
+    }
+}
+
+impl From<SuspensionError> for Failure {
+    fn from(error: SuspensionError) -> Self {
+        match error {
+            SuspensionError::Interrupted => Self::Interrupted,
+            other => Self::Other(other.to_string()),
+        }
     }
 }

@@ -4,8 +4,10 @@ use std::cmp::Ordering;
 
 use nalgebra::{Matrix3, Point3, Unit, Vector3};
 
-use super::Plane;
-use crate::case::{Background, Body, Case, Motion, Orientation};
+use super::grid::Plane;
+use bodies_of_revolution::Wrench;
+use stokes_body::linear_flow::LinearFlow;
+use stokes_suspension::{Body, Motion, Suspension};
 
 /// Width and height in lengths of the first body, where `[plane]` does not say.
 const EXTENT: f64 = 3.5;
@@ -18,38 +20,65 @@ const SLIMMEST: f64 = 4.0;
 /// What directions differ by in how they are liked, as a part of the spread of the centres.
 const LIKING: f64 = 1e-6;
 
+/// What is asked of a plane; what is `None` is chosen.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PlaneOptions {
+    /// The middle; if not given, the only body's centre or that of all.
+    pub center: Option<Point3<f64>>,
+    /// How it lies in space.
+    pub orientation: Option<PlaneOrientation>,
+    /// Width and height.
+    pub size: Option<[f64; 2]>,
+    /// Grid points across and up, at least two each.
+    pub points: Option<[usize; 2]>,
+}
+
+/// How a plane lies in space; directions may have any length but zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PlaneOrientation {
+    /// Orthogonal to a direction.
+    Normal(Vector3<f64>),
+    /// Two orthogonal directions in it, which a picture shows to the right and upwards.
+    Directions {
+        /// To the right.
+        across: Vector3<f64>,
+        /// Upwards.
+        up: Vector3<f64>,
+    },
+}
+
 impl Plane {
-    /// The plane of a case with bodies of these sizes, half their largest extents.
+    /// The plane in which most of the flow around some bodies is to be seen, as far as the options leave it open.
     ///
-    /// Where `[plane]` leaves it open, of one body: through its centre; containing its symmetry axis and whatever acts across the axis, be it
-    /// velocity, force or background flow, or else orthogonal to what turns the body; square, 3.5 lengths wide, with 201 x 201 points.
-    /// Upwards is z as far as possible, or else y.
+    /// Of one body: through its centre; containing its symmetry axis and whatever acts across the axis, be it velocity,
+    /// force or undisturbed flow, or else orthogonal to what turns the body; square, 3.5 lengths wide, with 201 x 201
+    /// points. Upwards is z as far as possible, or else y.
     ///
-    /// Of many: containing the direction that most bodies are moved or pushed along, or the background flow, and from it the longest extent of their centres;
-    /// through the centre of all, moved across itself to the nearest centre of a body; as large as all of them with a margin of the largest one's length.
-    pub fn of_case(case: &Case, sizes: &[f64]) -> Self {
-        let options = &case.plane;
-        let chosen = || match &case.bodies[..] {
-            [body] => normal(case, body),
-            _ => normal_of_many(case),
+    /// Of many: containing the direction that most bodies are moved or pushed along, or the undisturbed flow, and from it
+    /// the longest extent of their centres; through the centre of all, moved across itself to the nearest centre of a
+    /// body; as large as all of them with a margin of the largest one's length.
+    pub fn of(suspension: &Suspension, options: &PlaneOptions) -> Self {
+        let chosen = || match &suspension.bodies[..] {
+            [body] => normal(suspension, body),
+            _ => normal_of_many(suspension),
         };
         let (across, up) = match options.orientation {
-            Some(Orientation::Directions { across, up }) => (
-                Unit::new_normalize(across.into()),
-                Unit::new_normalize(up.into()),
-            ),
-            Some(Orientation::Normal(normal)) => directions(Unit::new_normalize(normal.into())),
+            Some(PlaneOrientation::Directions { across, up }) => {
+                (Unit::new_normalize(across), Unit::new_normalize(up))
+            }
+            Some(PlaneOrientation::Normal(normal)) => directions(Unit::new_normalize(normal)),
             None => directions(chosen()),
         };
-        let (center, size, points) = match &case.bodies[..] {
-            [body] => {
-                let length = 2.0 * sizes.first().copied().unwrap_or(1.0);
-                (body.center.into(), [EXTENT * length; 2], [POINTS; 2])
-            }
-            bodies => around(bodies, sizes, [across, up]),
+        let (center, size, points) = match &suspension.bodies[..] {
+            [body] => (
+                body.frame.center(),
+                [EXTENT * 2.0 * size(body); 2],
+                [POINTS; 2],
+            ),
+            bodies => around(bodies, [across, up]),
         };
         Self {
-            center: options.center.map_or(center, Point3::from),
+            center: options.center.unwrap_or(center),
             across,
             up,
             size: options.size.unwrap_or(size),
@@ -61,18 +90,23 @@ impl Plane {
     }
 }
 
+/// Half the largest extent of a body.
+fn size(body: &Body) -> f64 {
+    body.frame.scale() * body.shape.extent()
+}
+
 /// Middle, size and grid of a rectangle along two directions around many bodies.
 fn around(
     bodies: &[Body],
-    sizes: &[f64],
     [across, up]: [Unit<Vector3<f64>>; 2],
 ) -> (Point3<f64>, [f64; 2], [usize; 2]) {
     let normal = across.cross(&up);
+    let sizes: Vec<f64> = bodies.iter().map(size).collect();
     let largest = sizes.iter().copied().fold(0.0, f64::max);
     // From where to where all bodies are, along each direction.
     let [width, height, depth] = [*across, *up, normal].map(|direction| {
-        let along = bodies.iter().zip(sizes).map(|(body, size)| {
-            let center = Vector3::from(body.center).dot(&direction);
+        let along = bodies.iter().zip(&sizes).map(|(body, size)| {
+            let center = body.frame.center().coords.dot(&direction);
             [center - size, center + size]
         });
         along.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [from, to]| {
@@ -82,7 +116,7 @@ fn around(
     let middle = |[from, to]: [f64; 2]| 0.5 * (from + to);
     let depths = bodies
         .iter()
-        .map(|body| Vector3::from(body.center).dot(&normal));
+        .map(|body| body.frame.center().coords.dot(&normal));
     let nearest = depths.min_by(|a, b| {
         let [a, b] = [a, b].map(|depth_of_body| (depth_of_body - middle(depth)).abs());
         // Of two as far on either side the first one, whatever rounding says.
@@ -101,9 +135,13 @@ fn around(
 }
 
 /// The normal of the plane in which the flow around many bodies is best seen.
-fn normal_of_many(case: &Case) -> Unit<Vector3<f64>> {
-    let background = background(case);
-    let acting: Vec<Vector3<f64>> = case.bodies.iter().map(|body| acting(body)[0]).collect();
+fn normal_of_many(suspension: &Suspension) -> Unit<Vector3<f64>> {
+    let background = background(suspension);
+    let acting: Vec<Vector3<f64>> = suspension
+        .bodies
+        .iter()
+        .map(|body| acting(body)[0])
+        .collect();
     let mean = acting.iter().sum::<Vector3<f64>>() / acting.len() as f64;
     let largest = acting
         .iter()
@@ -129,13 +167,17 @@ fn normal_of_many(case: &Case) -> Unit<Vector3<f64>> {
             return Unit::new_normalize(first.cross(&off));
         }
     }
-    flattest(case, first)
+    flattest(suspension, first)
 }
 
 /// The direction, orthogonal to another if there is one, along which the centres are spread least; of directions that are as good, one that leaves
 /// z and x in the plane.
-fn flattest(case: &Case, orthogonal: Option<Unit<Vector3<f64>>>) -> Unit<Vector3<f64>> {
-    let centers: Vec<Vector3<f64>> = case.bodies.iter().map(|b| b.center.into()).collect();
+fn flattest(suspension: &Suspension, orthogonal: Option<Unit<Vector3<f64>>>) -> Unit<Vector3<f64>> {
+    let centers: Vec<Vector3<f64>> = suspension
+        .bodies
+        .iter()
+        .map(|b| b.frame.center().coords)
+        .collect();
     let middle = centers.iter().sum::<Vector3<f64>>() / centers.len() as f64;
     let project = |v: Vector3<f64>| match orthogonal {
         Some(n) => v - *n * n.dot(&v),
@@ -162,35 +204,47 @@ fn flattest(case: &Case, orthogonal: Option<Unit<Vector3<f64>>>) -> Unit<Vector3
 
 /// Velocity or force of a body, and what turns it.
 fn acting(body: &Body) -> [Vector3<f64>; 2] {
-    match body.motion.value {
-        Motion::Rigid {
-            velocity,
-            angular_velocity,
-        } => [velocity, angular_velocity].map(Into::into),
-        Motion::Free { force, torque } => [force, torque].map(Into::into),
+    match body.motion {
+        Motion::Given(motion) => [motion.velocity, motion.angular_velocity],
+        Motion::Free(Wrench { force, torque }) => [force, torque],
+        Motion::Mixed(mixed) => {
+            let (motion, load) = (mixed.given(), mixed.load());
+            let either = |a: Vector3<f64>, b: Vector3<f64>| if a.norm() > 0.0 { a } else { b };
+            [
+                either(motion.velocity, load.force),
+                either(motion.angular_velocity, load.torque),
+            ]
+        }
     }
 }
 
-/// Directions of the undisturbed flow.
-fn background(case: &Case) -> Vec<Vector3<f64>> {
-    match case.background.as_deref() {
-        Some(Background::Uniform { velocity }) => vec![Vector3::from(*velocity)],
-        Some(Background::Shear { flow, gradient, .. }) => {
-            vec![Vector3::from(*flow), Vector3::from(*gradient)]
-        }
-        _ => Vec::new(),
+/// Directions of the undisturbed flow: its velocity at the origin or, of a simple shear, flow and gradient.
+fn background(suspension: &Suspension) -> Vec<Vector3<f64>> {
+    let flow = &suspension.background;
+    if flow.velocity != Vector3::zeros() {
+        return vec![flow.velocity];
+    }
+    let svd = flow.gradient.svd(true, true);
+    let (Some(u), Some(v)) = (svd.u, svd.v_t) else {
+        return Vec::new();
+    };
+    let [largest, second] = [svd.singular_values[0], svd.singular_values[1]];
+    if largest > 0.0 && second <= PARALLEL * largest {
+        vec![u.column(0).into_owned(), v.row(0).transpose()]
+    } else {
+        Vec::new()
     }
 }
 
 /// The normal of the plane in which the flow around a body is best seen.
-fn normal(case: &Case, body: &Body) -> Unit<Vector3<f64>> {
-    let axis = Vector3::from(body.axis);
+fn normal(suspension: &Suspension, body: &Body) -> Unit<Vector3<f64>> {
+    let axis = *body.frame.axis();
     let across = |v: Vector3<f64>| {
         let off = v - axis * axis.dot(&v);
         (off.norm() > PARALLEL * v.norm()).then_some(off)
     };
     let [acting, turning] = acting(body);
-    let background = background(case);
+    let background = background(suspension);
     let straight = std::iter::once(acting).chain(background.iter().copied());
     if let Some(off) = straight.clone().find_map(across) {
         return Unit::new_normalize(axis.cross(&off));
@@ -198,7 +252,8 @@ fn normal(case: &Case, body: &Body) -> Unit<Vector3<f64>> {
     if let Some(off) = across(turning) {
         return Unit::new_normalize(off);
     }
-    let still = straight.into_iter().all(|v| v == Vector3::zeros()) && case.background.is_none();
+    let still = straight.into_iter().all(|v| v == Vector3::zeros())
+        && suspension.background == LinearFlow::rest();
     if turning != Vector3::zeros() && still && body.slip.is_none() {
         // A spin about the axis is seen from above.
         return Unit::new_normalize(axis);
@@ -227,6 +282,8 @@ fn directions(normal: Unit<Vector3<f64>>) -> (Unit<Vector3<f64>>, Unit<Vector3<f
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::Case;
+    use crate::solve::plane_of;
 
     /// The plane of a rod with these lines, and of a case with those.
     fn plane(body: &str, case: &str) -> Plane {
@@ -234,7 +291,7 @@ mod tests {
             "[shapes.rod]\nkind = 'spheroid'\npolar = 1\nequatorial = 0.5\n[[bodies]]\nshape = 'rod'\n{body}\n{case}"
         );
         let case = Case::parse(&text, "rod.toml").unwrap();
-        Plane::of_case(&case, &[1.0])
+        plane_of(&case).unwrap()
     }
 
     fn along(plane: &Plane, axes: [Vector3<f64>; 2]) {
@@ -291,7 +348,7 @@ mod tests {
             text += &format!("[[bodies]]\nshape = 'ball'\ncenter = {center:?}\n{lines}\n");
         }
         let case = Case::parse(&text, "many.toml").unwrap();
-        Plane::of_case(&case, &vec![1.0; bodies.len()])
+        plane_of(&case).unwrap()
     }
 
     #[test]

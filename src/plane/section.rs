@@ -4,29 +4,26 @@ use std::f64::consts::PI;
 
 use nalgebra::Point3;
 
-use super::Plane;
-use crate::solve::Solved;
+use super::grid::Plane;
 use bodies_of_revolution::Frame;
 use bodies_of_revolution::{CurveError, GeneratingCurve, Outline, Topology};
+use stokes_suspension::Flow;
 
 /// Points on a stretch of the curve that the plane cuts, beside the outline's own corners.
 const POINTS: usize = 128;
 /// Least sine of the angle between axis and normal: a smaller one is taken for this.
 const LEAST_TILT: f64 = 1e-9;
 
-impl Solved {
-    /// The sections of all bodies, as [`section`] gives them.
-    ///
-    /// # Errors
-    /// As [`section`].
-    pub fn sections(&self, plane: &Plane) -> Result<Vec<Vec<[f64; 2]>>, CurveError> {
-        let mut sections = Vec::new();
-        for body in &self.bodies {
-            let curve = body.discretization().curve();
-            sections.extend(section(&**curve, body.frame(), plane)?);
-        }
-        Ok(sections)
+/// The sections of all bodies in a flow, as [`section`] gives them.
+///
+/// # Errors
+/// As [`section`].
+pub fn sections(flow: &Flow, plane: &Plane) -> Result<Vec<Vec<[f64; 2]>>, CurveError> {
+    let mut sections = Vec::new();
+    for body in flow.bodies() {
+        sections.extend(section(&**body.shape(), &body.frame, plane)?);
     }
+    Ok(sections)
 }
 
 /// The closed curves, in the coordinates of the plane, in which it cuts the surface of a body; a point is inside the body if they go

@@ -148,6 +148,10 @@ impl Answer {
 impl fmt::Display for Answer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let bodies = self.bodies.len();
-        write!(f, "{bodies} bodies, estimated error {:.1e}", self.error_estimate)
+        write!(
+            f,
+            "{bodies} bodies, estimated error {:.1e}",
+            self.error_estimate
+        )
     }
 }

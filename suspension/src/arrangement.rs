@@ -108,10 +108,8 @@ mod tests {
     use nalgebra::Point3;
 
     use super::*;
-    use crate::suspension::Suspension;
-    use bodies_of_revolution::Spheroid;
     use crate::slip::Slip;
-    use stokes_body::progress::Silent;
+    use bodies_of_revolution::Spheroid;
 
     #[test]
     fn axes_of_spheres_are_free() {

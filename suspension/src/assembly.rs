@@ -85,7 +85,13 @@ impl Assembly {
         let constraints = constraints(bodies, &classes);
         let coupling = match bodies {
             [_] => None,
-            _ => Some(Coupling::new(bodies, &classes, &constraints, setup, progress)?),
+            _ => Some(Coupling::new(
+                bodies,
+                &classes,
+                &constraints,
+                setup,
+                progress,
+            )?),
         };
         let spent = classes.spent();
         Ok(Self {
@@ -96,7 +102,10 @@ impl Assembly {
                 ..Seconds::default()
             },
             frames: bodies.iter().map(|body| body.frame).collect(),
-            free: bodies.iter().map(|body| body.motion.free_directions()).collect(),
+            free: bodies
+                .iter()
+                .map(|body| body.motion.free_directions())
+                .collect(),
             keep: setup.keep,
             classes,
             layout,
@@ -116,7 +125,8 @@ impl Assembly {
         self.tolerances.target <= tolerances.target
             && self.tolerances.residual <= tolerances.residual
             && self.frames.iter().copied().eq(placed)
-            && (self.free.iter().cloned()).eq(bodies.iter().map(|body| body.motion.free_directions()))
+            && (self.free.iter().cloned())
+                .eq(bodies.iter().map(|body| body.motion.free_directions()))
             && self.classes.kinds() == kinds
     }
 
@@ -285,7 +295,9 @@ impl Assembly {
             None => {
                 let class = self.classes.of(0);
                 let on = &class.tables.discretization;
-                let density = class.factors().solve(&SurfaceModes::from_scaled(on, unknown));
+                let density = class
+                    .factors()
+                    .solve(&SurfaceModes::from_scaled(on, unknown));
                 let mut scaled = density.scaled_by_roots(on);
                 scaled.resize(unknown.len(), 0.0);
                 scaled
@@ -316,7 +328,14 @@ impl Assembly {
             let shell = class.free().map(|solver| solver.shell());
             let oversampling = self.tolerances.oversampling;
             let background = &suspension.background;
-            Imposed::new(body, background, discretization, *n_max, oversampling, shell)
+            Imposed::new(
+                body,
+                background,
+                discretization,
+                *n_max,
+                oversampling,
+                shell,
+            )
         });
         let imposed: Vec<Imposed> = imposed.collect();
         match imposed.iter().position(|i| !i.largest.is_finite()) {
@@ -430,13 +449,16 @@ impl Coupling {
 
 /// The constraints of the bodies that are free in some directions only.
 fn constraints(bodies: &[Body], classes: &Classes) -> Vec<Option<Constraint>> {
-    let constraints = bodies.iter().enumerate().map(|(i, body)| match &body.motion {
-        Motion::Mixed(mixed) => {
-            let response = classes.of(i).response()?;
-            Some(Constraint::new(response, mixed, &body.frame))
-        }
-        Motion::Given(_) | Motion::Free(_) => None,
-    });
+    let constraints = bodies
+        .iter()
+        .enumerate()
+        .map(|(i, body)| match &body.motion {
+            Motion::Mixed(mixed) => {
+                let response = classes.of(i).response()?;
+                Some(Constraint::new(response, mixed, &body.frame))
+            }
+            Motion::Given(_) | Motion::Free(_) => None,
+        });
     constraints.collect()
 }
 

@@ -12,13 +12,13 @@ use rayon::prelude::*;
 use stokes_body::discretization::Discretization;
 use stokes_body::layers::Layers;
 use stokes_body::progress::Progress;
-use stokes_body::resolution::Resolution;
+use stokes_body::resolution::{Resolution, checking_modes};
 use stokes_body::surface::SurfaceModes;
 
 use super::arrangement::are_coaxial;
 use super::class::{Classes, Kind};
 use super::error::SuspensionError;
-use super::finer::{FinerSurface, Part, checking_modes};
+use super::finer::{FinerSurface, Part};
 use super::imposed::Imposed;
 use super::interactions::{Interactions, Use};
 use super::solution::Solution;
@@ -147,8 +147,7 @@ impl Checker {
                 let asked = &bodies[body];
                 let background = &suspension.background;
                 let oversampling = tolerances.oversampling;
-                let imposed =
-                    Imposed::new(asked, background, on, finer.n_max, oversampling, None);
+                let imposed = Imposed::new(asked, background, on, finer.n_max, oversampling, None);
                 let mut miss = own.plus(1.0, &others).plus(-1.0, &imposed.velocity);
                 if asked.motion.is_found() {
                     let given = asked.frame.motion_to_body(asked.motion.given());
@@ -250,7 +249,13 @@ impl Checker {
             },
         };
         let operators = operators.clone();
-        Ok(Interactions::new(members.collect(), tolerance, uses, operators, &|_| ())?)
+        Ok(Interactions::new(
+            members.collect(),
+            tolerance,
+            uses,
+            operators,
+            &|_| (),
+        )?)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Classes of bodies that are alike in shape, resolution and equation. What it takes to solve for one is made once.
 
-use std::time::Instant;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::time::Instant;
 
 use panel_quadrature::QuadratureError;
 use rayon::prelude::*;
@@ -17,8 +17,8 @@ use stokes_body::discretization::Discretization;
 use stokes_body::factors::{ModalFactors, Seconds};
 use stokes_body::layers::LayerWeights;
 use stokes_body::mobility::MobilitySolver;
-use stokes_body::resolution::Resolution;
 use stokes_body::progress::{Progress, Silent};
+use stokes_body::resolution::Resolution;
 use stokes_body::surface_grid::azimuths;
 
 /// What is known of a body: its motion, or the force and torque on it.
@@ -175,7 +175,11 @@ impl Class {
     /// The same, not kept.
     pub fn new_single_layer_tables(&self) -> Tables {
         let tables = &self.tables;
-        Tables::new(tables.discretization.clone(), tables.n_max, LayerWeights::SINGLE)
+        Tables::new(
+            tables.discretization.clone(),
+            tables.n_max,
+            LayerWeights::SINGLE,
+        )
     }
 
     /// The finer surface with modes up to `n_max`, `kept` for the next time.
@@ -277,6 +281,9 @@ impl Classes {
 
     /// The kind of every body.
     pub fn kinds(&self) -> Vec<Kind> {
-        self.of.iter().map(|&class| self.classes[class].kind.clone()).collect()
+        self.of
+            .iter()
+            .map(|&class| self.classes[class].kind.clone())
+            .collect()
     }
 }

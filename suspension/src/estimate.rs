@@ -36,7 +36,10 @@ pub(crate) fn largest_speed(suspension: &Suspension, solution: &Solution) -> f64
 }
 
 fn speed_of(motion: &RigidMotion, size: f64) -> f64 {
-    motion.velocity.norm().max(size * motion.angular_velocity.norm())
+    motion
+        .velocity
+        .norm()
+        .max(size * motion.angular_velocity.norm())
 }
 
 /// Half the largest extent of a body's shape.

@@ -47,11 +47,6 @@ pub(crate) struct FinerSurface {
     tables: [OnceLock<Arc<Tables>>; Part::ALL.len()],
 }
 
-/// Modes of the solution that checks one of so many.
-pub(crate) fn checking_modes(modes: usize) -> usize {
-    modes + 8.max(modes / 4)
-}
-
 impl FinerSurface {
     /// The finer surface of bodies with these tables.
     pub fn new(tables: &Tables, n_max: usize, is_free: bool) -> Result<Self, QuadratureError> {
@@ -84,12 +79,22 @@ impl FinerSurface {
             Part::Solved => self.weights,
             Part::Forces => LayerWeights::SINGLE,
         };
-        let make = || Arc::new(Tables::new(self.discretization.clone(), self.n_max, weights));
+        let make = || {
+            Arc::new(Tables::new(
+                self.discretization.clone(),
+                self.n_max,
+                weights,
+            ))
+        };
         self.tables[part as usize].get_or_init(make)
     }
 
     /// Densities on this surface, interpolated from the one that they were found on.
-    pub fn resampled(&self, from: &Discretization, layers: &Layers) -> Result<Layers, QuadratureError> {
+    pub fn resampled(
+        &self,
+        from: &Discretization,
+        layers: &Layers,
+    ) -> Result<Layers, QuadratureError> {
         let resampled =
             |field: &SurfaceModes| field.resampled(from, &self.discretization, self.n_max);
         Ok(Layers {

@@ -9,7 +9,9 @@ use bodies_of_revolution::{Ball, Frame, Insides, Neighbours, RigidMotion, Shape,
 use nalgebra::{Matrix3, Point3, Vector3};
 use rayon::prelude::*;
 use stokes_body::discretization::Discretization;
-use stokes_body::flow::{AXIAL, Flow as FlowOfBody, FlowError, Side, SurfaceStress, first_not_finite};
+use stokes_body::flow::{
+    AXIAL, Flow as FlowOfBody, FlowError, Side, SurfaceStress, first_not_finite,
+};
 use stokes_body::kernel::{FlowAt, FlowGradientAt};
 use stokes_body::linear_flow::{self, LinearFlow};
 use stokes_body::progress::{Progress, Silent};
@@ -202,7 +204,10 @@ impl Flow {
     ///
     /// # Errors
     /// If a point is not finite.
-    pub fn stress_at(&self, points: &[Point3<f64>]) -> Result<Vec<Option<StressAt>>, SuspensionError> {
+    pub fn stress_at(
+        &self,
+        points: &[Point3<f64>],
+    ) -> Result<Vec<Option<StressAt>>, SuspensionError> {
         self.stress_at_with(points, self.0.tolerance, &Silent)
     }
 
@@ -306,7 +311,9 @@ impl Flow {
             let of_body = |body: &BodyFlow| {
                 let layers = body.disturbance.layers();
                 let most = |field: &SurfaceModes| {
-                    (0..field.modes()).map(|n| field.amplitude(n)).fold(0.0, f64::max)
+                    (0..field.modes())
+                        .map(|n| field.amplitude(n))
+                        .fold(0.0, f64::max)
                 };
                 most(&layers.double).max(most(&layers.single) * body.on().size())
             };
@@ -338,7 +345,12 @@ impl Flow {
         };
         let operators = self.0.operators.clone();
         let tolerance = MARGIN * tolerance;
-        Ok(Some(Sums::new(operators, Singularities::Both, output, tolerance)))
+        Ok(Some(Sums::new(
+            operators,
+            Singularities::Both,
+            output,
+            tolerance,
+        )))
     }
 
     fn by_sum<const GRADIENT: bool>(
@@ -384,8 +396,12 @@ impl Flow {
             let frame = &body.frame;
             body.disturbance.for_each_point(|point| {
                 let [stokeslet, stresslet] = strengths_in_lab(frame, point.single, point.double);
-                points.positions.push(frame.point_to_lab(point.position.into()).into());
-                points.normals.push(frame.vector_to_lab(point.normal).into());
+                points
+                    .positions
+                    .push(frame.point_to_lab(point.position.into()).into());
+                points
+                    .normals
+                    .push(frame.vector_to_lab(point.normal).into());
                 points.stokeslets.push(stokeslet.into());
                 points.stresslets.push(stresslet.into());
             })?;
@@ -430,7 +446,10 @@ impl Flow {
         let beside = |target: &Point3<f64>| -> Result<bool, FlowError> {
             for index in neighbours.holding(*target) {
                 let body = &self.0.bodies[index];
-                if body.disturbance.is_beside_a_point(body.frame.point_to_body(*target))? {
+                if body
+                    .disturbance
+                    .is_beside_a_point(body.frame.point_to_body(*target))?
+                {
                     return Ok(true);
                 }
             }
@@ -495,7 +514,9 @@ impl Flow {
         }
         let corrections = bodies.par_iter().zip(&of_body).map(|(body, indices)| {
             let frame = &body.frame;
-            let near = indices.iter().map(|&index| frame.point_to_body(targets[index]));
+            let near = indices
+                .iter()
+                .map(|&index| frame.point_to_body(targets[index]));
             let near: Vec<Point3<f64>> = near.collect();
             let corrections = body.disturbance.corrections::<GRADIENT>(&near, tolerance)?;
             let corrections = corrections.into_iter();
@@ -522,7 +543,10 @@ impl Flow {
         progress: &dyn Progress,
     ) -> Result<Vec<&SurfaceStress>, SuspensionError> {
         let stresses = &self.0.stresses;
-        let missing = bodies.iter().copied().filter(|&body| stresses[body].get().is_none());
+        let missing = bodies
+            .iter()
+            .copied()
+            .filter(|&body| stresses[body].get().is_none());
         let missing: Vec<usize> = missing.collect();
         progress.begin("tractions", missing.len());
         for some in missing.chunks(BODIES) {
@@ -534,7 +558,10 @@ impl Flow {
             }
             progress.advance(some.len());
         }
-        Ok(bodies.iter().filter_map(|&body| stresses[body].get()).collect())
+        Ok(bodies
+            .iter()
+            .filter_map(|&body| stresses[body].get())
+            .collect())
     }
 
     /// A body's own layers are taken mode by mode, what the others do on rings of points.
@@ -544,7 +571,9 @@ impl Flow {
         let mut targets = Vec::new();
         let mut first = Vec::with_capacity(bodies.len());
         for &body in bodies {
-            let BodyFlow { frame, disturbance, .. } = &inner.bodies[body];
+            let BodyFlow {
+                frame, disturbance, ..
+            } = &inner.bodies[body];
             let points = ring_points(disturbance.discretization(), disturbance.azimuths()?);
             first.push(targets.len());
             targets.extend(points.iter().map(|&x| frame.point_to_lab(x)));
@@ -553,22 +582,26 @@ impl Flow {
         let owner = |target: usize| bodies[first.partition_point(|&f| f <= target) - 1];
         let found = self.of_others(&targets, tolerance, owner)?;
         let stresses = bodies.iter().enumerate().map(|(place, &body)| {
-            let BodyFlow { frame, disturbance, .. } = &inner.bodies[body];
+            let BodyFlow {
+                frame, disturbance, ..
+            } = &inner.bodies[body];
             let nodes = disturbance.discretization().nodes();
             let own = disturbance.surface_stress(Side::Exterior)?;
             let samples = [disturbance.azimuths()?, HALVES];
             let n_max = (disturbance.modes() - 1).max(linear_flow::LAST_MODE);
             let mut at = found[first[place]..first[place + 1]].iter();
-            let traction = SurfaceModes::of_samples(nodes.len(), n_max, samples, |k, [cos, sin]| {
-                let [across, along] = nodes[k].normal;
-                let normal = Vector3::new(across * cos, across * sin, along);
-                let mut at = at.next().copied().unwrap_or_default();
-                at.gradient += inner.background.gradient;
-                frame.vector_to_body(at.stress() * frame.vector_to_lab(normal))
-            });
+            let traction =
+                SurfaceModes::of_samples(nodes.len(), n_max, samples, |k, [cos, sin]| {
+                    let [across, along] = nodes[k].normal;
+                    let normal = Vector3::new(across * cos, across * sin, along);
+                    let mut at = at.next().copied().unwrap_or_default();
+                    at.gradient += inner.background.gradient;
+                    frame.vector_to_body(at.stress() * frame.vector_to_lab(normal))
+                });
             let mut at = found[first[place]..first[place + 1]].iter();
             let pressure = SurfaceModes::of_samples(nodes.len(), n_max, samples, |_, _| {
-                at.next().map_or_else(Vector3::zeros, |at| at.pressure * Vector3::z())
+                at.next()
+                    .map_or_else(Vector3::zeros, |at| at.pressure * Vector3::z())
             });
             let scale = frame.scale();
             let whole = |others: SurfaceModes, own: &SurfaceModes| {
@@ -683,7 +716,9 @@ impl BodyFlow {
                 let to_lab = |vector: [f64; 3]| frame.vector_to_lab(turned(vector));
                 let point = turned([node.r, 0.0, node.z]);
                 surface.points.push(frame.point_to_lab(point.into()));
-                surface.normals.push(to_lab([node.normal[0], 0.0, node.normal[1]]));
+                surface
+                    .normals
+                    .push(to_lab([node.normal[0], 0.0, node.normal[1]]));
                 let share = std::f64::consts::TAU / azimuths as f64 * node.weight;
                 surface.weights.push(share * frame.scale().powi(2));
                 surface.velocity.push(to_lab(velocity.at(k, theta)));

@@ -34,9 +34,10 @@ impl Answer {
     pub fn stresslet_error(&self, body: usize) -> Result<f64, SuspensionError> {
         self.check_body(body)?;
         let found = self.bodies[body].stresslet;
-        let apart = self.finer.as_ref().map_or(0.0, |finer| {
-            (found - finer.bodies[body].stresslet).norm()
-        });
+        let apart = self
+            .finer
+            .as_ref()
+            .map_or(0.0, |finer| (found - finer.bodies[body].stresslet).norm());
         if self.is_direct() {
             return Ok(self.absolute_error(apart, found.norm()));
         }

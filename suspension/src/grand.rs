@@ -12,6 +12,7 @@
 use bodies_of_revolution::{RigidMotion, Wrench};
 use nalgebra::{DMatrix, Vector3};
 use stokes_body::linear_flow::LinearFlow;
+use stokes_body::progress::Progress;
 
 use super::answer::{Answer, BodyAnswer};
 use super::error::SuspensionError;
@@ -39,6 +40,7 @@ impl Solver {
     pub fn grand_resistance(
         &mut self,
         suspension: &Suspension,
+        progress: &dyn Progress,
     ) -> Result<GrandMatrix, SuspensionError> {
         let moving = |[velocity, angular_velocity]: [Vector3<f64>; 2]| {
             Motion::Given(RigidMotion {
@@ -47,7 +49,7 @@ impl Solver {
             })
         };
         let forces = |body: &BodyAnswer| [body.wrench.force, body.wrench.torque];
-        self.grand(suspension, moving, forces)
+        self.grand(suspension, moving, forces, progress)
     }
 
     /// The grand mobility matrix of the bodies, whatever is asked of them otherwise.
@@ -57,10 +59,11 @@ impl Solver {
     pub fn grand_mobility(
         &mut self,
         suspension: &Suspension,
+        progress: &dyn Progress,
     ) -> Result<GrandMatrix, SuspensionError> {
         let pushed = |[force, torque]: [Vector3<f64>; 2]| Motion::Free(Wrench { force, torque });
         let motions = |body: &BodyAnswer| [body.motion.velocity, body.motion.angular_velocity];
-        self.grand(suspension, pushed, motions)
+        self.grand(suspension, pushed, motions, progress)
     }
 
     /// Column by column; each begins with the resolutions that the one before needed.
@@ -69,6 +72,7 @@ impl Solver {
         suspension: &Suspension,
         elementary: impl Fn([Vector3<f64>; 2]) -> Motion,
         found: impl Fn(&BodyAnswer) -> [Vector3<f64>; 2],
+        progress: &dyn Progress,
     ) -> Result<GrandMatrix, SuspensionError> {
         let still = elementary([Vector3::zeros(); 2]);
         let mut cluster = Suspension {
@@ -88,7 +92,7 @@ impl Solver {
             unit[column % 6 / 3][column % 3] = 1.0;
             cluster.bodies[column / 6].motion = elementary(unit);
             let resolutions = before.as_ref().map(|answer| answer.start.resolutions());
-            let answer = self.best(&cluster, resolutions.as_ref())?;
+            let answer = self.best(&cluster, resolutions.as_ref(), progress)?;
             cluster.bodies[column / 6].motion = still;
             for (body, of_body) in answer.bodies.iter().enumerate() {
                 let [linear, angular] = found(of_body);

@@ -10,11 +10,11 @@ use panel_quadrature::QuadratureError;
 use rayon::prelude::*;
 use stokes_fmm::{FmmError, Output, Points, Singularities, direct};
 
+use super::batches::{Batches, multiply};
+use super::layout::Layout;
 use super::near::{self, Near};
 use super::points::{LayerPoints, strengths_in_lab};
 use super::sums::{self, Operators, Sums};
-use super::batches::{Batches, multiply};
-use super::layout::Layout;
 use super::tables::Member;
 
 /// Why the interactions cannot be computed.
@@ -137,11 +137,6 @@ impl Interactions {
     /// What is near.
     pub fn near(&self) -> &Near {
         &self.near
-    }
-
-    /// Points of all bodies.
-    pub fn points(&self) -> usize {
-        self.points.len()
     }
 
     /// Adds to the modes in `velocities` what the `densities` of all other bodies do; both are scaled by the roots of the weights. The error is about
@@ -283,7 +278,8 @@ impl Interactions {
             }
         };
         let layers = &mut self.layers;
-        let (stokeslets, stresslets) = (split(&mut layers.stokeslets), split(&mut layers.stresslets));
+        let (stokeslets, stresslets) =
+            (split(&mut layers.stokeslets), split(&mut layers.stresslets));
         let singularities = stokeslets.into_par_iter().zip(stresslets);
         (self.strengths.par_iter_mut())
             .zip(singularities)

@@ -2,8 +2,8 @@
 
 use std::sync::OnceLock;
 
-use super::class::Kind;
 use super::check::Keep;
+use super::class::Kind;
 use super::error::SuspensionError;
 use super::options::Options;
 use inexact_krylov::Method;
@@ -28,7 +28,10 @@ pub(crate) fn check(
     options: &Options,
     what: &'static str,
 ) -> Result<(), SuspensionError> {
-    let (needed, budget) = (needed_memory(kinds, Keep::Nothing, options), budget(options));
+    let (needed, budget) = (
+        needed_memory(kinds, Keep::Nothing, options),
+        budget(options),
+    );
     if needed <= budget {
         return Ok(());
     }

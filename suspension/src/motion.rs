@@ -73,7 +73,11 @@ impl Motion {
             Self::Given(_) => Vec::new(),
             Self::Free(wrench) => Mixed {
                 components: [0, 1, 2, 3, 4, 5].map(|k| {
-                    Component::Free(if k < 3 { wrench.force[k] } else { wrench.torque[k - 3] })
+                    Component::Free(if k < 3 {
+                        wrench.force[k]
+                    } else {
+                        wrench.torque[k - 3]
+                    })
                 }),
                 axes: UnitQuaternion::identity(),
             }
@@ -107,7 +111,9 @@ impl Motion {
                 let components = mixed.components.iter().map(|component| match component {
                     Component::Imposed(value) | Component::Free(value) => *value,
                 });
-                components.chain(mixed.axes.coords.iter().copied()).collect()
+                components
+                    .chain(mixed.axes.coords.iter().copied())
+                    .collect()
             }
         }
     }
@@ -122,7 +128,7 @@ impl Mixed {
     }
 
     /// The motion that is given, zero in the free directions.
-    pub(crate) fn given(&self) -> RigidMotion {
+    pub fn given(&self) -> RigidMotion {
         let [velocity, angular_velocity] = self.vectors(|component| match component {
             Component::Imposed(value) => *value,
             Component::Free(_) => 0.0,
@@ -134,7 +140,7 @@ impl Mixed {
     }
 
     /// Force and torque in the free directions.
-    pub(crate) fn load(&self) -> Wrench {
+    pub fn load(&self) -> Wrench {
         let [force, torque] = self.vectors(|component| match component {
             Component::Imposed(_) => 0.0,
             Component::Free(value) => *value,

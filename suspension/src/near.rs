@@ -84,12 +84,12 @@ impl Near {
             .par_iter()
             .map(|member| Surrounding::new(member, tolerance))
             .collect();
-        let neighbours = Neighbours::new(
-            (members.iter().zip(&surroundings)).map(|(member, around)| Ball {
+        let neighbours = Neighbours::new((members.iter().zip(&surroundings)).map(
+            |(member, around)| Ball {
                 center: member.frame.center(),
                 radius: around.radius + around.reach,
-            }),
-        );
+            },
+        ));
         let mut visits: Vec<Vec<Visit>> = (0..members.len())
             .into_par_iter()
             .map(|body| visits(members, &surroundings, &neighbours, body))

@@ -47,7 +47,9 @@ impl LayerPoints {
     /// The strengths of some of the points.
     pub fn strengths(&self, range: Range<usize>) -> Strengths<'_> {
         Strengths {
-            stokeslets: self.has_stokeslets().then(|| &self.stokeslets[range.clone()]),
+            stokeslets: self
+                .has_stokeslets()
+                .then(|| &self.stokeslets[range.clone()]),
             stresslets: self.has_stresslets().then(|| Stresslets {
                 densities: &self.stresslets[range.clone()],
                 normals: &self.normals[range],

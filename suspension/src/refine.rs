@@ -173,7 +173,11 @@ impl Rounds<'_> {
         let mut without_gain = 0;
         // An assembly that served before may be better than it need be.
         tolerances = *assembly.tolerances();
-        let rounds = if self.is_alone() { ROUNDS_ALONE } else { ROUNDS };
+        let rounds = if self.is_alone() {
+            ROUNDS_ALONE
+        } else {
+            ROUNDS
+        };
         for _ in 1..rounds {
             if best.error_estimate <= tolerance || without_gain > PATIENCE {
                 break;
@@ -246,7 +250,11 @@ impl Rounds<'_> {
                 let tolerances = *assembly.tolerances();
                 let mine = self.at_probes(&solution, speed, tolerances.evaluation)?;
                 let best = Tolerances::of_comparison(tolerances.target).evaluation;
-                let evaluation = if self.is_alone() { best } else { tolerances.evaluation };
+                let evaluation = if self.is_alone() {
+                    best
+                } else {
+                    tolerances.evaluation
+                };
                 let theirs = self.at_probes(&found, speed, evaluation)?;
                 let compared =
                     from_comparison(suspension, [&solution, &found], [&mine, &theirs], speed);
@@ -288,7 +296,11 @@ impl Rounds<'_> {
             Some(finer) => finer,
             None => {
                 let target = assembly.tolerances().target;
-                let target = if self.is_alone() { target } else { FINER * target };
+                let target = if self.is_alone() {
+                    target
+                } else {
+                    FINER * target
+                };
                 let setup = Setup {
                     tolerances: Tolerances::of_comparison(target),
                     options: self.options,
@@ -365,10 +377,7 @@ impl Rounds<'_> {
 }
 
 /// Refuses what an iteration came to if it is not worth an answer.
-fn check_iteration(
-    iteration: &Iteration,
-    tolerances: &Tolerances,
-) -> Result<(), SuspensionError> {
+fn check_iteration(iteration: &Iteration, tolerances: &Tolerances) -> Result<(), SuspensionError> {
     let Iteration {
         iterations,
         residual,
@@ -399,7 +408,12 @@ fn tightened(mut target: f64, round: &Round, allowed: f64, tolerance: f64) -> f6
     if missed < NEARLY {
         target = target.min(0.5 * tolerance / missed);
     }
-    let most_left = round.solution.residual_speeds.iter().copied().fold(0.0, f64::max);
+    let most_left = round
+        .solution
+        .residual_speeds
+        .iter()
+        .copied()
+        .fold(0.0, f64::max);
     if BLAMED * most_left > allowed {
         target *= allowed / (BLAMED * most_left);
     }

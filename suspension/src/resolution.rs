@@ -9,19 +9,19 @@ use std::sync::Arc;
 use nalgebra::Matrix3;
 
 use super::arrangement::are_coaxial;
-use super::error::SuspensionError;
 use super::check::Miss;
 use super::class::Kind;
+use super::error::SuspensionError;
 use super::slip::Slip;
 use super::suspension::{Body, Suspension};
 use bodies_of_revolution::Gap;
 use bodies_of_revolution::Meridian;
 use bodies_of_revolution::{GeneratingCurve, Panels, Shape};
-use stokes_body::resolution::Resolution;
 use stokes_body::discretization::Discretization;
 use stokes_body::linear_flow;
-use stokes_body::surface::SurfaceModes;
 use stokes_body::refinement::{ORDER, first_panels};
+use stokes_body::resolution::Resolution;
+use stokes_body::surface::SurfaceModes;
 
 /// What of the digits modes and panels have to resolve in a gap: images are weaker the nearer they are.
 const GAP_DIGITS: f64 = 0.75;
@@ -122,7 +122,11 @@ pub(crate) fn uniform(
             None => {
                 let panels = Panels::equal_arcs(&*body.shape, panels)
                     .map_err(|error| SuspensionError::Curve { body: index, error })?;
-                let resolution = Resolution { panels, order, modes };
+                let resolution = Resolution {
+                    panels,
+                    order,
+                    modes,
+                };
                 known.push((&body.shape, Arc::new(resolution)));
                 known[known.len() - 1].1.clone()
             }

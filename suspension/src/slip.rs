@@ -93,13 +93,19 @@ mod tests {
             let exact = 2.0 / (n * (n + 1.0)) * sin * derivative * e_theta;
             assert!((Slip::squirmer(b).at(x) - exact).norm() < 1e-15, "mode {n}");
         }
-        assert_eq!(Slip::squirmer([1.0, 1.0]).at(Vector3::z()), Vector3::zeros());
+        assert_eq!(
+            Slip::squirmer([1.0, 1.0]).at(Vector3::z()),
+            Vector3::zeros()
+        );
     }
 
     #[test]
     fn on_a_sphere_pole_to_pole_is_the_first_mode() {
         let x = 3.0 * Vector3::new(0.3, -0.2, 0.7).normalize();
-        let [first, slip] = [Slip::squirmer([1.5]).at(x), Slip::pole_to_pole(3.0, 3.0, 1.5).at(x)];
+        let [first, slip] = [
+            Slip::squirmer([1.5]).at(x),
+            Slip::pole_to_pole(3.0, 3.0, 1.5).at(x),
+        ];
         assert!((first - slip).norm() < 1e-15);
         let equator = Slip::pole_to_pole(1.0, 0.1, 2.0).at(Vector3::new(0.0, 0.1, 0.0));
         let down: Vector3<f64> = -2.0 * Vector3::z();

@@ -109,7 +109,8 @@ impl Start {
 
     /// Whether there is anything to start from.
     fn is_empty(&self) -> bool {
-        (self.bodies.iter()).all(|body| (0..body.unknown.modes()).all(|n| body.unknown.amplitude(n) == 0.0))
+        (self.bodies.iter())
+            .all(|body| (0..body.unknown.modes()).all(|n| body.unknown.amplitude(n) == 0.0))
     }
 
     /// The unknowns for bodies in other places and at other resolutions; zero for those that have no start,
@@ -133,7 +134,10 @@ impl Start {
                 continue;
             };
             let (from, to) = (&start.discretization, &class.tables);
-            let turned = body.frame.orientation().angle_to(&start.frame.orientation());
+            let turned = body
+                .frame
+                .orientation()
+                .angle_to(&start.frame.orientation());
             let unknown = if body.slip.is_none() && turned > TURNS_ALONG && is_turned_freely(body) {
                 let rotation = start.frame.orientation().inverse() * body.frame.orientation();
                 &start.unknown.on_turned_sphere(from, &rotation)?

@@ -59,7 +59,6 @@ const COARSEST: f64 = 1e-2;
 /// ```
 pub struct Solver {
     options: Options,
-    progress: Arc<dyn Progress + Send>,
     operators: Operators,
     /// What was made for shapes, the last used last.
     classes: Vec<Arc<Class>>,
@@ -72,19 +71,9 @@ impl Solver {
     pub fn new(options: Options) -> Self {
         Self {
             options,
-            progress: Arc::new(Silent),
             operators: Operators::default(),
             classes: Vec::new(),
             assembly: None,
-        }
-    }
-
-    /// The same, which tells `progress` where it is and asks it whether to go on.
-    #[must_use]
-    pub fn with_progress(self, progress: impl Progress + Send + 'static) -> Self {
-        Self {
-            progress: Arc::new(progress),
-            ..self
         }
     }
 
@@ -99,7 +88,7 @@ impl Solver {
     /// [`SolveError::Missed`], with the best answer inside, if the estimated error misses the tolerance; otherwise why
     /// there is no answer.
     pub fn solve(&mut self, suspension: &Suspension) -> Result<Answer, SolveError> {
-        wanted(self.best(suspension, None)?)
+        self.solve_with(suspension, None, &Silent)
     }
 
     /// The same, beginning with an earlier answer: its resolutions are the first, and its densities, moved and turned
@@ -113,7 +102,20 @@ impl Solver {
         suspension: &Suspension,
         earlier: &Answer,
     ) -> Result<Answer, SolveError> {
-        wanted(self.best(suspension, Some(&earlier.start))?)
+        self.solve_with(suspension, Some(earlier), &Silent)
+    }
+
+    /// The same, from an earlier answer if there is one; tells `progress` where it is and asks it whether to go on.
+    ///
+    /// # Errors
+    /// As [`solve`](Self::solve); [`SuspensionError::Interrupted`] if the caller cancels.
+    pub fn solve_with(
+        &mut self,
+        suspension: &Suspension,
+        earlier: Option<&Answer>,
+        progress: &dyn Progress,
+    ) -> Result<Answer, SolveError> {
+        wanted(self.best(suspension, earlier.map(|answer| &answer.start), progress)?)
     }
 
     /// The best answer, whether or not it misses the tolerance.
@@ -121,11 +123,11 @@ impl Solver {
         &mut self,
         asked: &Suspension,
         start: Option<&Start>,
+        progress: &dyn Progress,
     ) -> Result<Answer, SuspensionError> {
         let begin = Instant::now();
         self.check_options()?;
         asked.check()?;
-        let progress = self.progress.clone();
         progress.begin("gaps", 0);
         let gaps = gaps_within(&asked.bodies, REACH)?;
         let mut suspension = for_viscosity_one(asked);
@@ -144,11 +146,10 @@ impl Solver {
             options: &options,
             operators: &operators,
             viscosity: asked.viscosity,
-            progress: &*progress,
+            progress,
         };
         let tolerances = Tolerances::new(rounds.tolerance, options.residual);
-        let serves =
-            |assembly: &Assembly| assembly.serves(&suspension.bodies, &kinds, &tolerances);
+        let serves = |assembly: &Assembly| assembly.serves(&suspension.bodies, &kinds, &tolerances);
         // One that does not serve is freed before the next one is made.
         let assembly = self.assembly.take().filter(serves);
         let Converged {
@@ -365,26 +366,31 @@ fn bodies_of(
     boundary_error: &dyn Fn(usize) -> Option<f64>,
 ) -> Vec<BodyAnswer> {
     let viscosity = rounds.viscosity;
-    let bodies = rounds.suspension.bodies.iter().enumerate().map(|(i, body)| {
-        let class = solution.classes.of(i);
-        let frame = &body.frame;
-        let of_shape = stresslet(&class.tables.discretization, &solution.layers[i]);
-        let mut wrench = match body.motion {
-            Motion::Free(wrench) => wrench,
-            Motion::Given(_) | Motion::Mixed(_) => frame.wrench_to_lab(solution.wrenches[i]),
-        };
-        wrench.force *= viscosity;
-        wrench.torque *= viscosity;
-        BodyAnswer {
-            motion: match body.motion {
-                Motion::Given(motion) => motion,
-                Motion::Free(_) | Motion::Mixed(_) => frame.motion_to_lab(solution.motions[i]),
-            },
-            wrench,
-            stresslet: viscosity * frame.scale().powi(2) * frame.tensor_to_lab(&of_shape),
-            boundary_error: boundary_error(i),
-            resolution: (*class.kind.resolution).clone(),
-        }
-    });
+    let bodies = rounds
+        .suspension
+        .bodies
+        .iter()
+        .enumerate()
+        .map(|(i, body)| {
+            let class = solution.classes.of(i);
+            let frame = &body.frame;
+            let of_shape = stresslet(&class.tables.discretization, &solution.layers[i]);
+            let mut wrench = match body.motion {
+                Motion::Free(wrench) => wrench,
+                Motion::Given(_) | Motion::Mixed(_) => frame.wrench_to_lab(solution.wrenches[i]),
+            };
+            wrench.force *= viscosity;
+            wrench.torque *= viscosity;
+            BodyAnswer {
+                motion: match body.motion {
+                    Motion::Given(motion) => motion,
+                    Motion::Free(_) | Motion::Mixed(_) => frame.motion_to_lab(solution.motions[i]),
+                },
+                wrench,
+                stresslet: viscosity * frame.scale().powi(2) * frame.tensor_to_lab(&of_shape),
+                boundary_error: boundary_error(i),
+                resolution: (*class.kind.resolution).clone(),
+            }
+        });
     bodies.collect()
 }

@@ -9,12 +9,12 @@
 
 use panel_quadrature::QuadratureError;
 
+use super::batches::Batches;
 use super::class::Classes;
 use super::coarse::Coarse;
 use super::constraint::Constraint;
 use super::interactions::{InteractionError, Interactions};
 use super::options::Levels;
-use super::batches::Batches;
 use inexact_krylov::Operator;
 
 /// The operator of the iteration.
@@ -55,11 +55,6 @@ impl System {
             interactions,
             products: 0,
         })
-    }
-
-    /// The constraint of every body that is held in some directions and free in others.
-    pub fn constraints(&self) -> &[Option<Constraint>] {
-        &self.constraints
     }
 
     /// Frees the buffers of products.
@@ -131,10 +126,14 @@ impl System {
         density.clear();
         density.extend_from_slice(velocities);
         let layout = self.interactions.layout();
-        let before = self.constraints.iter().enumerate().map(|(body, constraint)| {
-            let first = |it: &Constraint| velocities[layout.of(body)][..it.len()].to_vec();
-            constraint.as_ref().map(first)
-        });
+        let before = self
+            .constraints
+            .iter()
+            .enumerate()
+            .map(|(body, constraint)| {
+                let first = |it: &Constraint| velocities[layout.of(body)][..it.len()].to_vec();
+                constraint.as_ref().map(first)
+            });
         let before: Vec<Option<Vec<f64>>> = before.collect();
         self.solve_bodies(&mut density);
         let added = self

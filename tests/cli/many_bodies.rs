@@ -8,7 +8,7 @@ use std::process::{Command, Output, Stdio};
 use axistokes::case::Case;
 use axistokes::nalgebra::{Matrix3, Vector3};
 use axistokes::output::Report;
-use axistokes::output::vtk::Surface;
+use axistokes::output::vtk::Mesh as Surface;
 use axistokes::progress::Silent;
 use axistokes::solve::{Solved, solve};
 
@@ -248,7 +248,7 @@ velocity = [0.1, 0.0, 0.2]
 tolerance = 1e-7
 ";
     let solved = solved(text);
-    let surface = Surface::of(&solved, |_| 128, &Silent).expect("surfaces");
+    let surface = Surface::of(&solved.answer.flow, |_| 128, &Silent).expect("surfaces");
     let area = |[a, b, c]: [usize; 3]| {
         let [a, b, c] = [a, b, c].map(|v| surface.points[v]);
         0.5 * (b - a).cross(&(c - a)).norm()

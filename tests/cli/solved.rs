@@ -4,7 +4,7 @@ use std::path::Path;
 
 use axistokes::case::Case;
 use axistokes::nalgebra::{Point3, Vector3};
-use axistokes::output::vtk::Surface;
+use axistokes::output::vtk::Mesh as Surface;
 use axistokes::progress::Silent;
 use axistokes::solve::{Solved, solve};
 
@@ -20,7 +20,7 @@ fn the_flow_is_that_of_the_report_and_nothing_inside() {
     let (case, solved) = solved("oblique-spheroid.toml");
     let mut points: Vec<Point3<f64>> = case.probes.iter().map(|p| p.value.into()).collect();
     points.push(case.bodies[0].center.into());
-    let flow = solved.flow_at(&points).expect("a flow");
+    let flow = solved.answer.flow.at(&points).expect("a flow");
     assert_eq!(flow.len(), points.len());
     for (probe, at) in solved.report.probes.iter().zip(&flow) {
         let at = at.expect("outside");
@@ -35,8 +35,12 @@ fn the_surface_is_that_of_the_body_and_moves_with_it() {
     let (case, solved) = solved("oblique-spheroid.toml");
     let body = &case.bodies[0];
     let [center, axis] = [body.center, body.axis].map(Vector3::from);
-    let surface = Surface::of(&solved, |_| 8, &Silent).expect("a surface");
-    let nodes = solved.bodies[0].discretization().nodes().len();
+    let surface = Surface::of(&solved.answer.flow, |_| 8, &Silent).expect("a surface");
+    let nodes = solved.answer.flow.bodies()[0]
+        .disturbance
+        .discretization()
+        .nodes()
+        .len();
     // The poles come last.
     assert_eq!(surface.points.len(), 8 * nodes + 2);
     for (k, point) in surface.points.iter().enumerate() {
@@ -55,7 +59,7 @@ fn the_surface_is_that_of_the_body_and_moves_with_it() {
 #[test]
 fn the_traction_of_a_sphere_is_uniform() {
     let (case, solved) = solved("sphere-drag.toml");
-    let surface = Surface::of(&solved, |_| 5, &Silent).expect("a surface");
+    let surface = Surface::of(&solved.answer.flow, |_| 5, &Silent).expect("a surface");
     for traction in surface.traction {
         let exact: Vector3<f64> = -1.5 * case.viscosity * Vector3::z();
         assert!((traction - exact).norm() < 1e-11, "{traction}");

@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 
 use axistokes::case::Case;
 use axistokes::nalgebra::{Point3, Vector3};
-use axistokes::output::vtk::Surface;
+use axistokes::output::vtk::Mesh as Surface;
 use axistokes::progress::Silent;
 use axistokes::solve::{Solved, solve};
 use vtkio::Vtk;
@@ -92,7 +92,7 @@ fn read_surface(bytes: &[u8]) -> Mesh {
 }
 
 fn mesh(solved: &Solved, azimuths: usize) -> Mesh {
-    let surface = Surface::of(solved, |_| azimuths, &Silent).expect("a surface");
+    let surface = Surface::of(&solved.answer.flow, |_| azimuths, &Silent).expect("a surface");
     read_surface(&surface.file().expect("a file"))
 }
 

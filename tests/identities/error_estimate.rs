@@ -3,12 +3,16 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use axistokes::body::Stokeslet;
+use axistokes::geometry::Outline;
 use axistokes::nalgebra::{Matrix3, Point3, Vector3};
 use axistokes::{
-    Answer, Biconcave, Capsule, GeneratingCurve, LinearFlow, Meridian, Motion, Outline, Panels,
-    Polar, Problem, Resolution, RigidMotion, Silent, Spheroid, Stokeslet, Torus, Wrench, squirmer,
+    Answer, Biconcave, Body, Capsule, GeneratingCurve, LinearFlow, Meridian, Motion, Options,
+    Panels, Polar, Resolution, RigidMotion, Silent, Slip, Spheroid, Suspension, Torus, Wrench,
 };
 use fastrand::Rng;
+
+use super::ask::{given, try_with};
 
 fn uniform(rng: &mut Rng, low: f64, high: f64) -> f64 {
     low + (high - low) * rng.f64()
@@ -43,6 +47,7 @@ fn beside(rng: &mut Rng, curve: &dyn GeneratingCurve, offset: f64) -> Vector3<f6
 }
 
 /// A flow of Stokeslets inside a body that is wanted at targets outside.
+#[derive(Clone)]
 struct KnownFlow {
     curve: Arc<dyn GeneratingCurve>,
     stokeslets: Vec<Stokeslet>,
@@ -101,19 +106,19 @@ impl KnownFlow {
 }
 
 /// The answer at a random tolerance, or to a random resolution.
-fn answer(problem: &Problem<'_>, rng: &mut Rng) -> (Answer, String) {
+fn answer(asked: &Suspension, rng: &mut Rng) -> (Answer, String) {
     if rng.bool() {
         let tolerance = 10f64.powf(uniform(rng, -9.0, -3.0));
-        let answer = problem.to_tolerance(tolerance, &Silent);
+        let answer = try_with(asked, &Options::tolerance(tolerance));
         (answer.expect("an answer"), format!("{tolerance:.1e}"))
     } else {
         let order = [10, 16][rng.usize(0..2)];
         let resolution = Resolution {
-            panels: Panels::equal_arcs(&*problem.curve, rng.usize(4..14)).expect("panels"),
+            panels: Panels::equal_arcs(&*asked.bodies[0].shape, rng.usize(4..14)).expect("panels"),
             order,
             modes: rng.usize(8..60),
         };
-        let answer = problem.at_resolution(resolution, &Silent);
+        let answer = try_with(asked, &given(&[Arc::new(resolution)], 1e-14));
         (answer.expect("an answer"), "by hand".into())
     }
 }
@@ -126,7 +131,7 @@ fn error_of_flow(
 ) -> f64 {
     let errors = targets
         .iter()
-        .zip(&answer.flow)
+        .zip(&answer.probes)
         .map(|(x, f)| (f.velocity - exact(x.coords)).norm());
     errors.fold(0.0, f64::max) / answer.largest_speed
 }
@@ -139,7 +144,8 @@ fn error_of_motion(answer: &Answer, exact: RigidMotion, size: f64) -> f64 {
             .norm()
             .max(size * motion.angular_velocity.norm())
     };
-    in_velocity(answer.motion - exact) / in_velocity(exact).max(1e-2 * answer.largest_speed)
+    in_velocity(answer.bodies[0].motion - exact)
+        / in_velocity(exact).max(1e-2 * answer.largest_speed)
 }
 
 /// How estimates compare with errors, case by case.
@@ -165,11 +171,11 @@ impl Ratios {
         println!(
             "{case} {asked}: estimate {:.2e}, error {truth:.2e}, ratio {ratio:.2}; {} panels x {}, {} modes, {:.2} s; {:?}",
             answer.error_estimate,
-            answer.resolution.panels.len(),
-            answer.resolution.order,
-            answer.resolution.modes,
-            answer.timings.estimate,
-            answer.body_flow.discretization.curve(),
+            answer.bodies[0].resolution.panels.len(),
+            answer.bodies[0].resolution.order,
+            answer.bodies[0].resolution.modes,
+            answer.statistics.timings.estimate,
+            answer.flow.bodies()[0].shape(),
         );
         if !(1.0..=100.0).contains(&ratio) {
             self.failures.push(case);
@@ -192,15 +198,14 @@ fn bounds_the_true_error_tightly_in_fifty_random_cases() {
     for case in 0..50 {
         let known = KnownFlow::random(&mut rng);
         let field = |x: Vector3<f64>| known.velocity(x);
-        let problem = Problem {
-            slip: Some(&field),
-            targets: &known.targets,
-            ..Problem::new(known.curve.clone())
-        };
-        let (answer, asked) = answer(&problem, &mut rng);
+        let of_slip = known.clone();
+        let slip = Slip::new(move |x| of_slip.velocity(x));
+        let body = Body::held(&known.curve).with_slip(slip);
+        let suspension = Suspension::new([body]).with_probes(known.targets.clone());
+        let (answer, asked) = answer(&suspension, &mut rng);
         let wrench = known.wrench();
         let in_force = |w: Wrench| w.force.norm().max(w.torque.norm() / known.size);
-        let of_wrench = in_force(answer.wrench - wrench) / in_force(wrench);
+        let of_wrench = in_force(answer.bodies[0].wrench - wrench) / in_force(wrench);
         let truth = error_of_flow(&answer, &known.targets, field).max(of_wrench);
         ratios.compare(case, &asked, &answer, truth);
     }
@@ -224,15 +229,15 @@ fn bounds_the_true_error_of_free_bodies_too() {
             gradient: gradient - Matrix3::from_diagonal_element(gradient.trace() / 3.0),
         };
         let whole = |x: Vector3<f64>| known.velocity(x) + background.at(x);
-        let slip = |x: Vector3<f64>| whole(x) - motion.at(x);
-        let problem = Problem {
-            motion: Motion::Free(known.wrench()),
-            slip: Some(&slip),
-            background,
-            targets: &known.targets,
-            ..Problem::new(known.curve.clone())
-        };
-        let (answer, asked) = answer(&problem, &mut rng);
+        let of_slip = known.clone();
+        let slip = Slip::new(move |x| of_slip.velocity(x) + background.at(x) - motion.at(x));
+        let body = Body::free(&known.curve)
+            .with_motion(Motion::Free(known.wrench()))
+            .with_slip(slip);
+        let suspension = Suspension::new([body])
+            .in_flow(background)
+            .with_probes(known.targets.clone());
+        let (answer, asked) = answer(&suspension, &mut rng);
         let truth = error_of_flow(&answer, &known.targets, whole)
             .max(error_of_motion(&answer, motion, known.size));
         ratios.compare(case, &asked, &answer, truth);
@@ -251,22 +256,17 @@ fn bounds_the_true_error_in_shear() {
         } else {
             [aspect, 1.0]
         };
-        let curve = Arc::new(Spheroid::new(axes[0], axes[1]).expect("a spheroid"));
+        let curve = Spheroid::new(axes[0], axes[1]).expect("a spheroid").shape();
         let [flow, other] = [(); 2].map(|()| random_vector(&mut rng).normalize());
         let background = LinearFlow::shear(1.0, flow, flow.cross(&other).normalize());
-        let problem = Problem {
-            motion: Motion::Free(Wrench::zero()),
-            background,
-            ..Problem::new(curve.clone())
-        };
         let resolution = Resolution {
             panels: Panels::equal_arcs(&*curve, rng.usize(2..5)).expect("panels"),
             order: 10,
             modes: 2,
         };
-        let answer = problem
-            .at_resolution(resolution, &Silent)
-            .expect("an answer");
+        let suspension = Suspension::new([Body::free(&curve)]).in_flow(background);
+        let answer = try_with(&suspension, &given(&[Arc::new(resolution)], 1e-14));
+        let answer = answer.expect("an answer");
         let lambda = (aspect * aspect - 1.0) / (aspect * aspect + 1.0);
         let axis = Vector3::z();
         let turning = axis.cross(&(background.strain_rate() * axis));
@@ -285,7 +285,7 @@ fn bounds_the_true_error_in_shear() {
 /// A squirmer's flow in closed form (Blake 1971): $p = -2 b_2 P_2(\cos\theta)/r^3$ and the stresslet $4\pi b_2 (e e - I/3)$, with coarse panels.
 #[test]
 fn pressures_and_stresslets_are_within_their_estimates() {
-    let slip = squirmer(&[1.5, 3.0]);
+    let slip = Slip::squirmer([1.5, 3.0]);
     let targets: Vec<Point3<f64>> = (0..40)
         .map(|k| {
             let theta = 0.08 * f64::from(k);
@@ -294,21 +294,17 @@ fn pressures_and_stresslets_are_within_their_estimates() {
         })
         .collect();
     for panels in [1, 2, 3, 4] {
-        let sphere = std::sync::Arc::new(Spheroid::sphere(1.0).expect("a sphere"));
+        let sphere = Spheroid::sphere(1.0).expect("a sphere").shape();
         let resolution = Resolution {
             panels: Panels::equal_arcs(&*sphere, panels).expect("panels"),
             order: 10,
             modes: 1,
         };
-        let answer = Problem {
-            motion: Motion::Free(Wrench::zero()),
-            slip: Some(&slip),
-            targets: &targets,
-            ..Problem::new(sphere)
-        }
-        .at_resolution(resolution, &Silent)
-        .expect("an answer");
-        let pressure = (targets.iter().zip(&answer.flow))
+        let swimmer = Body::free(&sphere).with_slip(slip.clone());
+        let suspension = Suspension::new([swimmer]).with_probes(targets.clone());
+        let answer = try_with(&suspension, &given(&[Arc::new(resolution)], 1e-14));
+        let answer = answer.expect("an answer");
+        let pressure = (targets.iter().zip(&answer.probes))
             .map(|(x, at)| {
                 let r = x.coords.norm();
                 let p2 = 1.5 * (x.z / r).powi(2) - 0.5;
@@ -317,17 +313,19 @@ fn pressures_and_stresslets_are_within_their_estimates() {
             .fold(0.0, f64::max);
         let e = Vector3::z();
         let exact = (e * e.transpose() - Matrix3::identity() / 3.0) * 12.0 * PI;
-        let stresslet = (answer.body_flow.stresslet() - exact).norm();
-        let estimates = answer.further_errors;
+        let stresslet = (answer.bodies[0].stresslet - exact).norm();
+        let of_pressure = answer.pressure_error(&targets);
+        let of_stresslet = answer.stresslet_error(0).expect("an estimate");
         println!(
             "{panels} panels: pressure {pressure:.1e} of {:.1e}, stresslet {stresslet:.1e} of {:.1e}",
-            estimates.pressure, estimates.stresslet
+            of_pressure, of_stresslet
         );
-        assert!(pressure <= estimates.pressure && estimates.pressure <= 100.0 * pressure);
-        assert!(stresslet <= estimates.stresslet);
+        assert!(pressure <= of_pressure && of_pressure <= 100.0 * pressure);
+        assert!(stresslet <= of_stresslet);
         // 8 pi (2 b1^2 + b2^2)/3.
-        let power = (answer.body_flow.power().expect("a power") - 36.0 * PI).abs();
-        let estimate = answer.power_error().expect("an estimate");
+        let power = (answer.flow.powers(&Silent).expect("a power")[0] - 36.0 * PI).abs();
+        let estimate =
+            answer.power_errors(&Silent).expect("an estimate")[0].expect("of a body alone");
         println!("    power {power:.1e} of {estimate:.1e}");
         assert!(power <= estimate);
     }

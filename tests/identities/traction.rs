@@ -5,12 +5,15 @@ use std::sync::Arc;
 use axistokes::body::flow::Side;
 use axistokes::body::layers::Layers;
 use axistokes::body::matrix::{LayerPotential, ModalMatrices};
+use axistokes::body::{Discretization, Flow, SurfaceModes};
 use axistokes::nalgebra::{Matrix3, Vector3};
 use axistokes::{
-    Answer, Discretization, Flow, GeneratingCurve, LinearFlow, Motion, Panels, Polar, Problem,
-    Resolution, RigidMotion, Silent, Spheroid, SurfaceModes, Torus, Wrench,
+    Answer, Body, GeneratingCurve, LinearFlow, Motion, Panels, Polar, Resolution, RigidMotion,
+    Shape, Silent, Slip, Spheroid, Suspension, Torus, Wrench,
 };
 use fastrand::Rng;
+
+use super::ask::{given, try_with};
 
 fn random_vector(rng: &mut Rng) -> Vector3<f64> {
     Vector3::from_fn(|_, _| 2.0 * rng.f64() - 1.0)
@@ -23,7 +26,7 @@ fn random_motion(rng: &mut Rng) -> RigidMotion {
     }
 }
 
-fn curves() -> [Arc<dyn GeneratingCurve>; 3] {
+fn curves() -> [Shape; 3] {
     [
         Arc::new(Spheroid::new(1.0, 0.5).expect("a spheroid")),
         Arc::new(Polar::new(&[1.0, 0.2, 0.1, 0.1]).expect("a pear")),
@@ -31,26 +34,37 @@ fn curves() -> [Arc<dyn GeneratingCurve>; 3] {
     ]
 }
 
-fn solved(problem: Problem<'_>) -> (Answer, SurfaceModes) {
+fn solved(body: Body, background: LinearFlow) -> (Answer, SurfaceModes) {
     // Tractions take a derivative of the density: panels that serve velocities to 1e-12 are not enough.
     let resolution = Resolution {
-        panels: Panels::equal_arcs(&*problem.curve, 10).expect("panels"),
+        panels: Panels::equal_arcs(&*body.shape, 10).expect("panels"),
         order: 16,
         modes: 24,
     };
-    let answer = problem
-        .at_resolution(resolution, &Silent)
-        .expect("an answer");
-    let traction = answer.body_flow.traction().expect("a traction");
+    let answer = at(body, background, resolution);
+    let traction = traction_of(&answer);
     (answer, traction)
+}
+
+fn at(body: Body, background: LinearFlow, resolution: Resolution) -> Answer {
+    let suspension = Suspension::new([body]).in_flow(background);
+    try_with(&suspension, &given(&[Arc::new(resolution)], 1e-14)).expect("an answer")
+}
+
+fn traction_of(answer: &Answer) -> SurfaceModes {
+    let stresses = answer.flow.surface_stresses(&[0], &Silent);
+    stresses.expect("a traction")[0].traction.clone()
+}
+
+fn nodes_of(answer: &Answer) -> &Discretization {
+    answer.flow.bodies()[0].disturbance.discretization()
 }
 
 /// The largest difference of a traction from a function of the place, at a few azimuths of every node.
 fn error(answer: &Answer, exact: impl Fn(Vector3<f64>) -> Vector3<f64>) -> f64 {
-    let flow = &answer.body_flow;
-    let traction = flow.traction().expect("a traction");
+    let traction = traction_of(answer);
     let mut most = 0.0f64;
-    for (k, node) in flow.discretization.nodes().iter().enumerate() {
+    for (k, node) in nodes_of(answer).nodes().iter().enumerate() {
         for theta in [0.3f64, 1.7, 4.0] {
             let (sin, cos) = theta.sin_cos();
             let [r, t, z] = traction.at(k, theta);
@@ -67,24 +81,21 @@ fn error(answer: &Answer, exact: impl Fn(Vector3<f64>) -> Vector3<f64>) -> f64 {
 fn of_spheres_is_exact() {
     let (u, omega) = (Vector3::new(1.0, 2.0, 3.0), Vector3::new(-0.5, 0.2, 1.0));
     let sphere: Arc<dyn GeneratingCurve> = Arc::new(Spheroid::sphere(1.0).expect("a sphere"));
-    let (moving, _) = solved(Problem {
-        motion: Motion::Given(RigidMotion {
-            velocity: u,
-            angular_velocity: omega,
-        }),
-        ..Problem::new(sphere.clone())
+    let motion = Motion::Given(RigidMotion {
+        velocity: u,
+        angular_velocity: omega,
     });
+    let body = Body::held(&sphere).with_motion(motion);
+    let (moving, _) = solved(body, LinearFlow::rest());
     let found = error(&moving, |n| -1.5 * u - 3.0 * omega.cross(&n));
     println!("sphere that moves and turns: {found:.1e}");
     assert!(found < 1e-11);
     let strain = Matrix3::new(1.0, 0.3, 0.0, 0.3, -0.4, 0.1, 0.0, 0.1, -0.6);
-    let (strained, _) = solved(Problem {
-        background: LinearFlow {
-            velocity: Vector3::zeros(),
-            gradient: strain,
-        },
-        ..Problem::new(sphere)
-    });
+    let background = LinearFlow {
+        velocity: Vector3::zeros(),
+        gradient: strain,
+    };
+    let (strained, _) = solved(Body::held(&sphere), background);
     let found = error(&strained, |n| 5.0 * strain * n);
     println!("sphere in strain: {found:.1e}");
     assert!(found < 1e-11);
@@ -111,20 +122,17 @@ fn of_spheroids_under_a_force_converges_to_the_exact_one() {
             -force / (size * plane)
         };
         let errors = panels.map(|panels| {
-            let problem = Problem {
-                motion: Motion::Free(Wrench {
-                    force,
-                    torque: Vector3::zeros(),
-                }),
-                ..Problem::new(curve.clone())
-            };
             let resolution = Resolution {
                 panels: Panels::equal_arcs(&*curve, panels).expect("panels"),
                 order: 16,
                 modes: 1,
             };
-            let free = problem.at_resolution(resolution, &Silent);
-            let found = error(&free.expect("an answer"), exact);
+            let free = at(
+                Body::free(&curve).pushed(force),
+                LinearFlow::rest(),
+                resolution,
+            );
+            let found = error(&free, exact);
             println!("spheroid {polar} x {equatorial} under a force, {panels} panels: {found:.1e}");
             found
         });
@@ -209,15 +217,12 @@ fn integrates_to_force_and_torque() {
             torque: random_vector(&mut rng),
         };
         for motion in [Motion::Given(random_motion(&mut rng)), Motion::Free(free)] {
-            let (answer, traction) = solved(Problem {
-                motion,
-                background,
-                ..Problem::new(curve.clone())
-            });
-            let found = traction.wrench(&answer.body_flow.discretization);
-            let scale = answer.wrench.force.norm().max(answer.wrench.torque.norm());
-            let force = (found.force + answer.wrench.force).norm() / scale;
-            let torque = (found.torque + answer.wrench.torque).norm() / scale;
+            let (answer, traction) = solved(Body::held(&curve).with_motion(motion), background);
+            let found = traction.wrench(nodes_of(&answer));
+            let wrench = answer.bodies[0].wrench;
+            let scale = wrench.force.norm().max(wrench.torque.norm());
+            let force = (found.force + wrench.force).norm() / scale;
+            let torque = (found.torque + wrench.torque).norm() / scale;
             println!("{curve:?} {motion:?}: force {force:.1e}, torque {torque:.1e}");
             assert!(force <= 8e-13 && torque <= 1e-12);
         }
@@ -231,24 +236,18 @@ fn two_motions_are_reciprocal() {
     for curve in curves() {
         let [a, b] = [(); 2].map(|()| {
             let (wave, amplitude) = (random_vector(&mut rng), random_vector(&mut rng));
-            let slip = |x: Vector3<f64>| wave.dot(&x).sin() * amplitude;
+            let slip = Slip::new(move |x| wave.dot(&x).sin() * amplitude);
             let motion = Motion::Given(random_motion(&mut rng));
-            solved(Problem {
-                motion,
-                slip: Some(&slip),
-                ..Problem::new(curve.clone())
-            })
+            let body = Body::held(&curve).with_motion(motion).with_slip(slip);
+            solved(body, LinearFlow::rest())
         });
-        let nodes = &a.0.body_flow.discretization;
-        let (here, there) = (
-            a.0.body_flow.surface_velocity(),
-            b.0.body_flow.surface_velocity(),
-        );
+        let nodes = nodes_of(&a.0);
+        let [here, there] = [&a.0, &b.0].map(|it| it.flow.bodies()[0].surface_velocity());
         let forth = here.inner_product(nodes, &b.1);
         let back = there.inner_product(nodes, &a.1);
         let power = -here.inner_product(nodes, &a.1);
         let error = (forth - back).abs() / power;
-        let direct = a.0.body_flow.power().expect("a power");
+        let direct = a.0.flow.powers(&Silent).expect("a power")[0];
         println!(
             "{curve:?}: {forth} and {back}, {error:.1e} of the power; powers {power} and {direct}"
         );

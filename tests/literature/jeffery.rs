@@ -2,12 +2,16 @@
 
 use std::sync::Arc;
 
+use axistokes::body::discretization::Discretization;
+use axistokes::body::mobility::MobilitySolver;
+use axistokes::body::surface::SurfaceModes;
 use axistokes::nalgebra::{Matrix3, Point3, Unit, Vector3};
 use axistokes::{
-    Discretization, Frame, LinearFlow, MobilitySolver, Motion, Panels, Problem, Silent, Spheroid,
-    SurfaceModes, Wrench,
+    Body, Frame, GeneratingCurve, LinearFlow, Panels, Silent, Spheroid, Suspension, Wrench,
 };
 use fastrand::Rng;
+
+use super::ask::answer;
 
 fn random_vector(rng: &mut Rng) -> Vector3<f64> {
     Vector3::from_fn(|_, _| 2.0 * rng.f64() - 1.0)
@@ -70,18 +74,13 @@ fn every_aspect_and_orientation_turns_as_in_closed_form() {
 /// The same question asked as a problem, with its error estimate.
 #[test]
 fn a_tilted_rod_in_shear() {
-    let axis = Unit::new_normalize(Vector3::new(0.8, 0.0, 0.6));
-    let frame = Frame::along(Point3::origin(), axis);
+    let rod = Spheroid::new(1.0, 0.25).expect("a spheroid").shape();
     let flow = LinearFlow::shear(1.0, Vector3::x(), Vector3::z());
-    let problem = Problem {
-        motion: Motion::Free(Wrench::zero()),
-        background: flow.in_frame(&frame),
-        ..Problem::new(Arc::new(Spheroid::new(1.0, 0.25).expect("a spheroid")))
-    };
-    let answer = problem.to_tolerance(1e-11, &Silent).expect("an answer");
+    let tilted = Body::free(&rod).along([0.8, 0.0, 0.6]);
+    let answer = answer(&Suspension::new([tilted]).in_flow(flow), 1e-11);
     let exact: f64 = 0.5 - 15.0 / 17.0 * 0.5 * (0.8 * 0.8 - 0.6 * 0.6);
     let exact = exact * Vector3::y();
-    let found = frame.vector_to_lab(answer.motion.angular_velocity);
+    let found = answer.bodies[0].motion.angular_velocity;
     assert!((found - exact).norm() <= 1e-11);
     assert!(answer.error_estimate <= 1e-11 && answer.largest_speed > 0.5);
 }

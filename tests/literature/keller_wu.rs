@@ -1,10 +1,11 @@
 //! Spheroids that swim by slip from pole to pole (Keller & Wu 1977), and the same formula continued to oblate ones.
 
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 use axistokes::nalgebra::{Point3, Vector3};
-use axistokes::{Motion, Problem, Silent, Spheroid, Wrench, pole_to_pole};
+use axistokes::{Body, GeneratingCurve, Slip, Spheroid, Suspension};
+
+use super::ask::answer;
 
 /// Swimming speed over slip speed: with $\tau_0$ the inverse eccentricity, $\tau_0 (\tau_0 - (\tau_0^2 - 1) \operatorname{arcoth} \tau_0)$.
 fn speed(polar: f64, equatorial: f64) -> f64 {
@@ -47,22 +48,20 @@ fn every_aspect_swims_as_in_closed_form() {
     ] {
         let exact = 1.5 * speed(polar, equatorial);
         assert!((exact - 1.5 * speed_by_reciprocity(polar, equatorial)).abs() < 1e-8);
-        let slip = pole_to_pole(polar, equatorial, 1.5);
-        let curve = Arc::new(Spheroid::new(polar, equatorial).expect("a spheroid"));
-        let problem = Problem {
-            motion: Motion::Free(Wrench::zero()),
-            slip: Some(&slip),
-            targets: &[Point3::new(0.0, 2.0, 2.0)],
-            ..Problem::new(curve)
-        };
-        let answer = problem.to_tolerance(1e-12, &Silent).expect("an answer");
-        let error = (answer.motion.velocity - exact * Vector3::z()).norm();
+        let shape = Spheroid::new(polar, equatorial)
+            .expect("a spheroid")
+            .shape();
+        let swimmer = Body::free(&shape).with_slip(Slip::pole_to_pole(polar, equatorial, 1.5));
+        let probe = Point3::new(0.0, 2.0, 2.0);
+        let answer = answer(&Suspension::new([swimmer]).with_probes([probe]), 1e-12);
+        let body = &answer.bodies[0];
+        let error = (body.motion.velocity - exact * Vector3::z()).norm();
         println!(
             "{polar} : {equatorial}, {} panels: error {error:.1e}, estimate {:.1e}",
-            answer.resolution.panels.len(),
+            body.resolution.panels.len(),
             answer.error_estimate
         );
-        assert!(error <= 9e-15 && answer.motion.angular_velocity.norm() <= 1e-14);
+        assert!(error <= 9e-15 && body.motion.angular_velocity.norm() <= 1e-14);
     }
     assert!((speed(1.0 + 1e-4, 1.0) - 2.0 / 3.0).abs() < PI * 1e-4);
 }

@@ -1,5 +1,7 @@
 //! Resistance, mobility and swimming of bodies against values that were found in other ways.
 
+#[path = "../common/mod.rs"]
+mod ask;
 mod bodies;
 mod faxen;
 mod jeffery;

@@ -29,7 +29,7 @@ fn of_three_and_five_spheres() {
             }
             body
         });
-        let suspension = Suspension::new(bodies.collect());
+        let suspension = Suspension::new(bodies.collect::<Vec<_>>());
         let answer = answer(&suspension, 3e-9);
         let direction = if motion.starts_with("along") {
             Vector3::z()
@@ -53,7 +53,7 @@ fn of_three_and_five_spheres() {
             });
         println!(
             "{count} spheres, spacing {spacing}, {motion}: {error:.1e} of the largest, estimate {:.1e}, {} iterations",
-            answer.error_estimate, answer.iteration.iterations
+            answer.error_estimate, answer.statistics.iteration.iterations
         );
         worst = worst.max(error);
         assert!(error <= answer.error_estimate);

@@ -1,24 +1,24 @@
 //! Grand matrices of random clusters: symmetric, positive, and the same in any frame and units.
 
 use axistokes::geometry::{Placed, gaps};
-use axistokes::{Body, Frame, Silent, Suspension};
+use axistokes::{Body, Frame, Options, Silent, Solver, Suspension};
 use nalgebra::{DMatrix, Point3, Rotation3, Unit};
 
 use super::common::{Curve, apart, asymmetry, direction, random, spheroid};
 
 /// Three to five bodies of three shapes and different scales, at least `least` apart.
-fn cluster(seed: u64, least: f64) -> Suspension<'static> {
+fn cluster(seed: u64, least: f64) -> Suspension {
     let mut rng = fastrand::Rng::with_seed(seed);
     let curves: [Curve; 3] = [spheroid(1.0, 1.0), spheroid(1.0, 0.5), spheroid(0.6, 1.0)];
     let count = if seed < 2 { 3 } else { rng.usize(3..=5) };
-    let mut bodies: Vec<Body<'static>> = Vec::new();
+    let mut bodies: Vec<Body> = Vec::new();
     while bodies.len() < count {
         let center = Point3::from(4.0 * random(&mut rng));
         let frame = Frame::along(center, direction(&mut rng)).scaled(0.5 + rng.f64());
         bodies.push(Body::new(curves[rng.usize(0..3)].clone(), frame));
         let placed: Vec<Placed<'_>> = (bodies.iter())
             .map(|body| Placed {
-                curve: &*body.curve,
+                curve: &*body.shape,
                 frame: body.frame,
                 reach: least,
             })
@@ -38,9 +38,8 @@ fn cluster(seed: u64, least: f64) -> Suspension<'static> {
 fn check(seed: u64, least: f64, tolerance: f64) {
     let cluster = cluster(seed, least);
     let begin = std::time::Instant::now();
-    let found = cluster
-        .grand_mobility(tolerance, &Silent)
-        .expect("a matrix");
+    let mut solver = Solver::new(Options::tolerance(tolerance));
+    let found = solver.grand_mobility(&cluster, &Silent).expect("a matrix");
     let asymmetry = asymmetry(&found.matrix);
     let smallest = (0.5 * (&found.matrix + found.matrix.transpose()))
         .symmetric_eigenvalues()
@@ -99,7 +98,10 @@ fn look_the_same_from_any_side() {
     // Forces per velocity are a length, torques per velocity an area, torques per angular velocity a volume.
     let power = |i: usize, j: usize| 1 + (i / 3 % 2) as i32 + (j / 3 % 2) as i32;
     let lengths = DMatrix::from_fn(count, count, |i, j| 3f64.powi(power(i, j)));
-    let mobility = |s: &Suspension<'_>| s.grand_mobility(1e-4, &Silent).expect("a matrix").matrix;
+    let mobility = |s: &Suspension| {
+        let mut solver = Solver::new(Options::tolerance(1e-4));
+        solver.grand_mobility(s, &Silent).expect("a matrix").matrix
+    };
     let [own, of_turned, of_enlarged] = [&cluster, &turned, &enlarged].map(mobility);
     let errors = [
         apart(&of_turned, &(&turn * &own * turn.transpose())),

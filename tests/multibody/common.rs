@@ -2,10 +2,7 @@
 
 use std::sync::Arc;
 
-use axistokes::multibody::suspension::Answer;
-use axistokes::{
-    Frame, GeneratingCurve, Motion, RigidMotion, Silent, Spheroid, Suspension, Wrench,
-};
+use axistokes::{Frame, GeneratingCurve, Motion, RigidMotion, Spheroid, Wrench};
 use nalgebra::{DMatrix, Point3, Unit, Vector3};
 
 pub type Curve = Arc<dyn GeneratingCurve>;
@@ -34,11 +31,7 @@ pub fn pushed(force: Vector3<f64>, torque: Vector3<f64>) -> Motion {
     Motion::Free(Wrench { force, torque })
 }
 
-pub fn answer(suspension: &Suspension<'_>, tolerance: f64) -> Answer {
-    suspension
-        .to_tolerance(tolerance, &Silent)
-        .expect("an answer")
-}
+pub use crate::ask::{answer, given, try_with};
 
 /// Components between -1/2 and 1/2.
 pub fn random(rng: &mut fastrand::Rng) -> Vector3<f64> {

@@ -2,14 +2,16 @@
 
 use axistokes::body::linear_flow::LinearFlow;
 use axistokes::geometry::ContactError;
-use axistokes::multibody::SuspensionError;
-use axistokes::multibody::suspension::Answer;
-use axistokes::{Body, Frame, Motion, Progress, Silent, Suspension, Wrench};
+use axistokes::suspension::SolveError;
+use axistokes::{
+    Answer, Body, Frame, Motion, Options, Progress, Silent, Slip, Solver, Suspension,
+    SuspensionError, Wrench,
+};
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::common::{at, ball, moving, spheroid};
+use super::common::{answer, at, ball, given, moving, spheroid, try_with};
 
-fn pair(distance: f64) -> Suspension<'static> {
+fn pair(distance: f64) -> Suspension {
     Suspension::new(
         [0.0, distance]
             .map(|z| Body::new(ball(), at(0.0, 0.0, z)))
@@ -27,8 +29,8 @@ fn refused(result: Result<Answer, SuspensionError>) -> (SuspensionError, String)
     (error, message)
 }
 
-fn of(suspension: &Suspension<'_>) -> (SuspensionError, String) {
-    refused(suspension.to_tolerance(1e-6, &Silent))
+fn of(suspension: &Suspension) -> (SuspensionError, String) {
+    refused(try_with(suspension, &Options::tolerance(1e-6)))
 }
 
 #[test]
@@ -37,11 +39,11 @@ fn no_bodies() {
     assert!(matches!(error, SuspensionError::Empty));
     let none = Suspension::new(Vec::new());
     assert!(matches!(
-        none.grand_mobility(1e-6, &Silent),
+        Solver::new(Options::tolerance(1e-6)).grand_mobility(&none, &Silent),
         Err(SuspensionError::Empty)
     ));
     assert!(matches!(
-        none.at_resolutions(&[], 1e-6, &Silent),
+        try_with(&none, &given(&[], 1e-6)),
         Err(SuspensionError::Empty)
     ));
 }
@@ -99,9 +101,9 @@ fn places() {
 fn velocities_that_are_not_finite() {
     let nan = Vector3::new(0.0, f64::NAN, 0.0);
     let rest = Vector3::zeros();
-    let slip = |x: Vector3<f64>| if x.z > 0.9 { nan } else { Vector3::x() };
+    let slip = Slip::new(move |x| if x.z > 0.9 { nan } else { Vector3::x() });
     let mut wrong = pair(3.0);
-    wrong.bodies[1].slip = Some(&slip);
+    wrong.bodies[1].slip = Some(slip);
     let (error, _) = of(&wrong);
     assert!(matches!(error, SuspensionError::Velocity { body: 1 }));
     for motion in [
@@ -112,12 +114,12 @@ fn velocities_that_are_not_finite() {
         let mut wrong = pair(3.0);
         wrong.bodies[1].motion = motion;
         let (error, _) = of(&wrong);
-        assert!(matches!(error, SuspensionError::Velocity { body: 1 }));
+        assert!(matches!(error, SuspensionError::Motion { body: 1, .. }));
     }
     let mut wrong = pair(3.0);
     wrong.background = LinearFlow::uniform(nan);
     let (error, _) = of(&wrong);
-    assert!(matches!(error, SuspensionError::Velocity { body: 0 }));
+    assert!(matches!(error, SuspensionError::Background));
 }
 
 #[test]
@@ -135,37 +137,34 @@ fn forces_that_are_not_finite() {
         let mut wrong = pair(3.0);
         wrong.bodies[1].motion = Motion::Free(wrench);
         let (error, message) = of(&wrong);
-        assert!(matches!(error, SuspensionError::Wrench { body: 1, .. }));
-        assert!(message.starts_with("force and torque on body 1 must be finite, got "));
+        assert!(matches!(error, SuspensionError::Motion { body: 1, .. }));
+        assert!(message.starts_with("motion, force and torque of body 1 must be finite, got "));
     }
 }
 
 #[test]
 fn targets_that_are_not_finite() {
-    let targets = [Point3::new(0.0, 0.0, 10.0), Point3::new(0.0, f64::NAN, 0.0)];
-    let wrong = Suspension {
-        targets: &targets,
-        ..pair(3.0)
-    };
+    let probes = [Point3::new(0.0, 0.0, 10.0), Point3::new(0.0, f64::NAN, 0.0)];
+    let wrong = pair(3.0).with_probes(probes);
     let (error, _) = of(&wrong);
     assert!(matches!(
         error,
-        SuspensionError::Flow(axistokes::FlowError::NotFinite { index: 1 })
+        SuspensionError::Flow(axistokes::body::flow::FlowError::NotFinite { index: 1 })
     ));
 }
 
 #[test]
 fn memory() {
-    let mut wrong = pair(3.0);
-    wrong.options.memory = Some(1000);
-    let (error, _) = of(&wrong);
+    let mut options = Options::tolerance(1e-6);
+    options.memory = Some(1000);
+    let (error, _) = refused(try_with(&pair(3.0), &options));
     assert!(matches!(error, SuspensionError::Memory { .. }));
 }
 
-fn moved() -> Suspension<'static> {
+fn moved() -> Suspension {
     let mut pair = pair(2.5);
     pair.bodies[0].motion = moving(Vector3::new(1.0, 2.0, 3.0), Vector3::x());
-    pair.bodies[1].curve = spheroid(1.0, 0.6);
+    pair.bodies[1].shape = spheroid(1.0, 0.6);
     pair.bodies[1].frame = Frame::along(
         Point3::new(0.0, 0.3, 2.5),
         Unit::new_normalize(Vector3::new(1.0, 2.0, 0.5)),
@@ -175,43 +174,43 @@ fn moved() -> Suspension<'static> {
 
 #[test]
 fn iterations_that_end_too_soon() {
-    let mut pair = moved();
-    pair.options.max_iterations = 2;
-    let (error, _) = of(&pair);
+    let mut options = Options::tolerance(1e-6);
+    let refused_with = |options: &Options| refused(try_with(&moved(), options));
+    options.max_iterations = 2;
+    let (error, _) = refused_with(&options);
     assert!(matches!(
         error,
         SuspensionError::NotConverged { iterations: 2, .. }
     ));
-    pair.options.max_iterations = 0;
-    let (_error, _) = of(&pair);
-    pair.options.max_iterations = 100;
-    pair.options.method = axistokes::krylov::Method::Gmres { restart: 0 };
-    let (_error, _) = of(&pair);
+    options.max_iterations = 0;
+    refused_with(&options);
+    options.max_iterations = 100;
+    options.method = axistokes::krylov::Method::Gmres { restart: 0 };
+    refused_with(&options);
 }
 
 #[test]
 fn tolerances_out_of_range() {
     for tolerance in [0.0, -1.0, f64::NAN] {
-        refused(moved().to_tolerance(tolerance, &Silent));
+        refused(try_with(&moved(), &Options::tolerance(tolerance)));
     }
 }
 
 #[test]
 fn resolutions_that_are_too_few() {
     let pair = moved();
-    let answer = pair.to_tolerance(1e-3, &Silent).expect("an answer");
+    let answer = answer(&pair, 1e-3);
     let one = std::sync::Arc::new(answer.bodies[0].resolution.clone());
-    let (_error, _) = refused(pair.at_resolutions(&[one], 1e-3, &Silent));
+    let (_error, _) = refused(try_with(&pair, &given(&[one], 1e-3)));
 }
 
-/// It has no answer, and the estimate says so.
+/// It is no equation for the fluid outside.
 #[test]
 fn an_interior_formulation() {
-    let mut pair = moved();
-    pair.formulation = axistokes::Formulation::InteriorDoubleLayer;
-    if let Ok(answer) = pair.to_tolerance(1e-3, &Silent) {
-        assert!(answer.error_estimate > 0.1);
-    }
+    let mut options = Options::tolerance(1e-3);
+    options.formulation = axistokes::body::dirichlet::Formulation::InteriorDoubleLayer;
+    let (error, _) = refused(try_with(&moved(), &options));
+    assert!(matches!(error, SuspensionError::Interior));
 }
 
 /// Has lost interest from a stage on.
@@ -233,14 +232,33 @@ impl Progress for Impatient {
 
 #[test]
 fn interruptions() {
-    let targets = [Point3::new(0.0, 0.0, 10.0)];
-    let pair = Suspension {
-        targets: &targets,
-        ..moved()
-    };
+    let pair = moved().with_probes([Point3::new(0.0, 0.0, 10.0)]);
     for stage in ["gaps", "near points", "iterating", "checking", "evaluating"] {
         let impatient = Impatient(stage, false.into());
-        let (error, _) = refused(pair.to_tolerance(1e-6, &impatient));
+        let mut solver = Solver::new(Options::tolerance(1e-6));
+        let found = solver.solve_with(&pair, None, &impatient);
+        let (error, _) = refused(found.or_else(SolveError::answer));
         assert!(matches!(error, SuspensionError::Interrupted), "{stage}");
     }
+}
+
+/// An answer that misses its tolerance is an error, with the answer inside.
+#[test]
+fn tolerances_that_are_missed() {
+    let mut options = Options::tolerance(1e-9);
+    options.residual = Some(1e-4);
+    let missed = Solver::new(options).solve(&moved());
+    let Err(SolveError::Missed { answer, tolerance }) = missed else {
+        panic!("a residual of 1e-4 was good enough");
+    };
+    assert!(answer.error_estimate > tolerance && tolerance == 1e-9);
+}
+
+#[test]
+fn a_surface_that_is_not_there() {
+    let answer = answer(&pair(3.0), 1e-3);
+    assert!(matches!(
+        answer.surface(2),
+        Err(SuspensionError::NoBody { body: 2, bodies: 2 })
+    ));
 }

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use axistokes::{Body, Frame, Panels, Resolution, Silent, Suspension};
+use axistokes::{Body, Frame, Panels, Resolution, Suspension};
 use nalgebra::Point3;
 
-use super::common::{direction, moving, pushed, random, spheroid};
+use super::common::{direction, given, moving, pushed, random, spheroid, try_with};
 
 fn iterations(side: usize, free: bool) -> usize {
     let mut rng = fastrand::Rng::with_seed(1);
@@ -32,21 +32,20 @@ fn iterations(side: usize, free: bool) -> usize {
             ..Body::new(curve, frame)
         });
     }
-    let mut suspension = Suspension::new(bodies);
-    suspension.options.residual = Some(1e-8);
-    let answer = suspension
-        .at_resolutions(&resolutions, 1e-7, &Silent)
-        .expect("an answer");
+    let mut options = given(&resolutions, 1e-7);
+    options.residual = Some(1e-8);
+    let answer = try_with(&Suspension::new(bodies), &options).expect("an answer");
+    let iteration = &answer.statistics.iteration;
     println!(
         "{} bodies, {}: {} iterations to {:.1e}, estimate {:.1e}, {:?}",
         side.pow(3),
         if free { "mobility" } else { "resistance" },
-        answer.iteration.iterations,
-        answer.iteration.residual,
+        iteration.iterations,
+        iteration.residual,
         answer.error_estimate,
-        answer.timings
+        answer.statistics.timings
     );
-    answer.iteration.iterations
+    iteration.iterations
 }
 
 #[test]

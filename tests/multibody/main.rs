@@ -1,5 +1,7 @@
 //! Many bodies against values that were found in other ways (`data/README.md`), against exact flows, and against themselves.
 
+#[path = "../common/mod.rs"]
+mod ask;
 mod chains;
 mod clusters;
 mod common;

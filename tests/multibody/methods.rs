@@ -2,18 +2,18 @@
 
 use std::sync::Arc;
 
+use axistokes::body::dirichlet::Formulation;
 use axistokes::krylov::Method;
-use axistokes::multibody::SuspensionError;
-use axistokes::multibody::suspension::{Answer, Options};
-use axistokes::{Body, Formulation, Frame, Panels, Resolution, Silent, Suspension};
+use axistokes::suspension::Levels;
+use axistokes::{Answer, Body, Frame, Options, Panels, Resolution, Suspension, SuspensionError};
 use nalgebra::{Point3, Vector3};
 
-use super::common::{at, direction, moving, pushed, random, spheroid};
+use super::common::{at, direction, given, moving, pushed, random, spheroid, try_with};
 
 const TOLERANCE: f64 = 1e-6;
 
 /// Four bodies near each other: three that move as they are told, one that is pushed.
-fn four() -> Suspension<'static> {
+fn four() -> Suspension {
     let mut rng = fastrand::Rng::with_seed(21);
     let curves = [spheroid(1.0, 0.5), spheroid(0.5, 1.0)];
     let places = [
@@ -33,7 +33,7 @@ fn four() -> Suspension<'static> {
             Frame::along(Point3::from(place), direction(&mut rng)),
         )
     });
-    Suspension::new(bodies.collect())
+    Suspension::new(bodies.collect::<Vec<_>>())
 }
 
 /// The largest difference of forces and torques, relative to the largest, and of motions, relative to the largest speed.
@@ -57,92 +57,68 @@ fn agree() {
     let resolutions: Vec<_> = (four.bodies.iter())
         .map(|body| {
             Arc::new(Resolution {
-                panels: Panels::equal_arcs(&*body.curve, 4).expect("panels"),
+                panels: Panels::equal_arcs(&*body.shape, 4).expect("panels"),
                 order: 12,
                 modes: 8,
             })
         })
         .collect();
-    let reference = four
-        .at_resolutions(&resolutions, TOLERANCE, &Silent)
-        .expect("an answer");
-    let defaults = Options::default();
-    let with = |options: Options| Suspension {
-        options,
-        ..four.clone()
+    let defaults = given(&resolutions, TOLERANCE);
+    let reference = try_with(&four, &defaults).expect("an answer");
+    let with = |change: &dyn Fn(&mut Options)| {
+        let mut options = defaults.clone();
+        change(&mut options);
+        options
     };
     println!(
         "reference: estimate {:.1e}, {} iterations, {} near points {} bytes, speed {}",
         reference.error_estimate,
-        reference.iteration.iterations,
-        reference.near.0,
-        reference.near.1,
+        reference.statistics.iterations,
+        reference.statistics.near_points,
+        reference.statistics.near_bytes,
         reference.largest_speed
     );
-    let mut least = with(Options {
-        memory: Some(1),
-        ..defaults
-    });
-    let Err(SuspensionError::Memory { needed, .. }) =
-        least.at_resolutions(&resolutions, TOLERANCE, &Silent)
-    else {
+    let mut least = with(&|options| options.memory = Some(1));
+    let Err(SuspensionError::Memory { needed, .. }) = try_with(&four, &least) else {
         panic!("a byte was enough");
     };
-    least.options.memory = Some((needed * f64::from(1 << 30)) as usize + 2);
+    least.memory = Some((needed * f64::from(1 << 30)) as usize + 2);
     let variants = [
         (
             "exact products",
-            with(Options {
-                loosest_product: 0.0,
-                ..defaults
-            }),
+            with(&|options| options.loosest_product = 0.0),
         ),
-        (
-            "one level",
-            with(Options {
-                two_level: false,
-                ..defaults
-            }),
-        ),
+        ("one level", with(&|options| options.levels = Levels::One)),
         (
             "restarts",
-            with(Options {
-                method: Method::Gmres { restart: 5 },
-                ..defaults
-            }),
+            with(&|options| options.method = Method::Gmres { restart: 5 }),
         ),
         (
             "BiCGStab",
-            with(Options {
-                method: Method::BiCgStab,
-                ..defaults
-            }),
+            with(&|options| options.method = Method::BiCgStab),
         ),
         (
             "BiCGStab, one level",
-            with(Options {
-                method: Method::BiCgStab,
-                two_level: false,
-                ..defaults
+            with(&|options| {
+                options.method = Method::BiCgStab;
+                options.levels = Levels::One;
             }),
         ),
         ("little memory", least),
         (
             "single layer",
-            Suspension {
-                formulation: Formulation::SingleLayer,
-                ..four.clone()
-            },
+            with(&|options| options.formulation = Formulation::SingleLayer),
         ),
     ];
-    for (name, suspension) in &variants {
-        let answer = suspension
-            .at_resolutions(&resolutions, TOLERANCE, &Silent)
-            .expect("an answer");
+    for (name, options) in &variants {
+        let answer = try_with(&four, options).expect("an answer");
         let difference = difference(&answer, &reference);
         println!(
             "{name}: {difference:.1e}, estimate {:.1e}, {} iterations, {} products, {} bytes near",
-            answer.error_estimate, answer.iteration.iterations, answer.products, answer.near.1
+            answer.error_estimate,
+            answer.statistics.iterations,
+            answer.statistics.products,
+            answer.statistics.near_bytes
         );
         assert!(difference <= 3e-7);
     }
@@ -155,24 +131,21 @@ fn rows_that_are_kept_and_rows_that_are_not() {
         motion: moving(Vector3::new(1.0, x, 0.3), Vector3::new(0.0, 0.2, 1.0)),
         ..Body::new(curve.clone(), at(x, 0.0, 0.1 * x))
     });
-    let mut pair = Suspension::new(bodies.to_vec());
+    let pair = Suspension::new(bodies);
     let resolution = Arc::new(Resolution {
         panels: Panels::equal_arcs(&*curve, 4).expect("panels"),
         order: 12,
         modes: 12,
     });
     let resolutions = [resolution.clone(), resolution];
-    let kept = pair.at_resolutions(&resolutions, 1e-4, &Silent);
-    let kept = kept.expect("an answer");
-    pair.options.memory = Some(1);
-    let Err(SuspensionError::Memory { needed, .. }) =
-        pair.at_resolutions(&resolutions, 1e-4, &Silent)
-    else {
+    let mut options = given(&resolutions, 1e-4);
+    let kept = try_with(&pair, &options).expect("an answer");
+    options.memory = Some(1);
+    let Err(SuspensionError::Memory { needed, .. }) = try_with(&pair, &options) else {
         panic!("a byte was enough");
     };
-    pair.options.memory = Some((needed * f64::from(1 << 30)) as usize + 2);
-    let not_kept = pair.at_resolutions(&resolutions, 1e-4, &Silent);
-    let not_kept = not_kept.expect("an answer");
-    assert!(kept.near.1 > 0 && not_kept.near.1 == 0);
+    options.memory = Some((needed * f64::from(1 << 30)) as usize + 2);
+    let not_kept = try_with(&pair, &options).expect("an answer");
+    assert!(kept.statistics.near_bytes > 0 && not_kept.statistics.near_bytes == 0);
     assert_eq!(difference(&kept, &not_kept), 0.0);
 }

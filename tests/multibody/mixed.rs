@@ -2,14 +2,14 @@
 
 use std::f64::consts::PI;
 
-use axistokes::multibody::suspension::Answer;
-use axistokes::{Body, Frame, LinearFlow, Motion, Polar, Stokeslet, Suspension, squirmer};
+use axistokes::body::kernel::Stokeslet;
+use axistokes::{Answer, Body, Frame, LinearFlow, Motion, Polar, Slip, Suspension};
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::common::{Curve, answer, at, ball, direction, moving, pushed, random, spheroid};
 
 /// A held rod, a free disc and a free sphere, with gaps of some tenths.
-fn three() -> Vec<Body<'static>> {
+fn three() -> Vec<Body> {
     let mut rng = fastrand::Rng::with_seed(11);
     let places = [
         Point3::origin(),
@@ -18,7 +18,7 @@ fn three() -> Vec<Body<'static>> {
     ];
     let curves = [spheroid(1.0, 0.5), spheroid(0.5, 0.8), ball()];
     let frames = places.map(|center| Frame::along(center, direction(&mut rng)));
-    let mut bodies: Vec<Body<'static>> = curves
+    let mut bodies: Vec<Body> = curves
         .into_iter()
         .zip(frames)
         .map(|(curve, frame)| Body::new(curve, frame))
@@ -40,7 +40,7 @@ fn torques_in_a_narrow_gap_are_no_worse_than_estimated() {
                 motion,
                 ..Body::new(disc.clone(), at(0.0, 0.0, z))
             });
-        Suspension::new(bodies.collect())
+        Suspension::new(bodies.collect::<Vec<_>>())
     };
     let (rest, x, y) = (Vector3::zeros(), Vector3::x(), Vector3::y());
     let turning = answer(&discs([moving(rest, y), moving(rest, rest)]), 1e-7);
@@ -161,10 +161,9 @@ fn two_mixed_problems_are_reciprocal() {
 fn squirmers_far_apart_swim_as_alone() {
     let r = 1000.0;
     let b = [1.5, 3.0];
-    let slip = squirmer(&b);
     let swimmers = [0.0, r].map(|z| Body {
         motion: Motion::Free(axistokes::Wrench::zero()),
-        slip: Some(&slip),
+        slip: Some(Slip::squirmer(b)),
         ..Body::new(ball(), at(0.0, 0.0, z))
     });
     let answer = answer(&Suspension::new(swimmers.to_vec()), 1e-12);
@@ -261,29 +260,33 @@ fn known_flow(tolerances: &[f64]) {
     };
     let slips: Vec<_> = (frames.iter())
         .map(|frame| {
-            move |x: Vector3<f64>| frame.vector_to_body(exact(frame.point_to_lab(x.into()).coords))
+            let (frame, stokeslets) = (*frame, stokeslets.clone());
+            Slip::new(move |x| {
+                let x = frame.point_to_lab(x.into()).coords;
+                frame.vector_to_body(stokeslets.iter().map(|s| s.velocity(x)).sum())
+            })
         })
         .collect();
-    let bodies: Vec<Body<'_>> = (0..8)
+    let bodies: Vec<Body> = (0..8)
         .map(|i| Body {
-            slip: Some(&slips[i]),
+            slip: Some(slips[i].clone()),
             ..Body::new(curves[i % 4].clone(), frames[i])
         })
         .collect();
     // Far away, and at a millionth from the surfaces.
-    let mut targets: Vec<Point3<f64>> = (0..30)
+    let mut probes: Vec<Point3<f64>> = (0..30)
         .map(|_| {
             Point3::from(3.0 * direction(&mut rng).into_inner() * (2.0 + rng.f64()))
                 + Vector3::repeat(1.15)
         })
         .collect();
-    let far = targets.len();
+    let far = probes.len();
     for body in &bodies {
         for _ in 0..6 {
-            let ends = body.curve.breakpoints();
+            let ends = body.shape.breakpoints();
             let t = ends[0] + (ends[ends.len() - 1] - ends[0]) * rng.f64();
-            let (p, step) = (body.curve.point(t), 1e-7);
-            let (before, after) = (body.curve.point(t - step), body.curve.point(t + step));
+            let (p, step) = (body.shape.point(t), 1e-7);
+            let (before, after) = (body.shape.point(t - step), body.shape.point(t + step));
             let mut normal = [before.z - after.z, after.r - before.r];
             // Outward or inward: away from the centre will do for these shapes.
             if normal[0] * p.r + normal[1] * p.z < 0.0 {
@@ -296,11 +299,11 @@ fn known_flow(tolerances: &[f64]) {
                 p.z + height * normal[1] / length,
             );
             let (sin, cos) = (2.0 * PI * rng.f64()).sin_cos();
-            targets.push(body.frame.point_to_lab(Point3::new(r * cos, r * sin, z)));
+            probes.push(body.frame.point_to_lab(Point3::new(r * cos, r * sin, z)));
         }
     }
     let suspension = Suspension {
-        targets: &targets,
+        probes: probes.clone(),
         ..Suspension::new(bodies)
     };
     for &tolerance in tolerances {
@@ -308,17 +311,17 @@ fn known_flow(tolerances: &[f64]) {
         let error = |(x, found): (&Point3<f64>, &axistokes::FlowAt)| {
             (found.velocity - exact(x.coords)).norm() / answer.largest_speed
         };
-        let errors: Vec<f64> = targets.iter().zip(&answer.targets).map(error).collect();
+        let errors: Vec<f64> = probes.iter().zip(&answer.probes).map(error).collect();
         let most = |errors: &[f64]| errors.iter().fold(0.0f64, |a, &b| a.max(b));
         println!(
             "tolerance {tolerance:.0e}: far {:.1e}, near {:.1e}, estimate {:.1e}, {} points, {} near, {} modes, {:?}",
             most(&errors[..far]),
             most(&errors[far..]),
             answer.error_estimate,
-            answer.points,
-            answer.near.0,
+            answer.statistics.points,
+            answer.statistics.near_points,
             answer.bodies[0].resolution.modes,
-            answer.timings
+            answer.statistics.timings
         );
         // Forces are those of the Stokeslets.
         let forces = answer

@@ -1,6 +1,6 @@
 //! Grand matrices of pairs of spheroids and spheres: from end to end to side by side.
 
-use axistokes::{Body, Frame, Silent, Suspension};
+use axistokes::{Body, Frame, Options, Silent, Solver, Suspension};
 use nalgebra::{DMatrix, Point3, Unit, Vector3};
 
 use super::common::{apart, asymmetry, at, cells, number, spheroid};
@@ -17,7 +17,7 @@ fn table(text: &str) -> Vec<(String, DMatrix<f64>)> {
         .collect()
 }
 
-fn pair(label: &str) -> Suspension<'static> {
+fn pair(label: &str) -> Suspension {
     let rod = spheroid(1.0, 0.5);
     let [first, second] = match label {
         "side-by-side" => [(rod.clone(), at(0.0, 0.0, 0.0)), (rod, at(1.5, 0.0, 0.0))],
@@ -65,8 +65,9 @@ fn check(labels: &[&str], tolerance: f64) {
         }
         let pair = pair(label);
         let begin = std::time::Instant::now();
-        let r = pair.grand_resistance(tolerance, &Silent).expect("a matrix");
-        let m = pair.grand_mobility(tolerance, &Silent).expect("a matrix");
+        let mut solver = Solver::new(Options::tolerance(tolerance));
+        let r = solver.grand_resistance(&pair, &Silent).expect("a matrix");
+        let m = solver.grand_mobility(&pair, &Silent).expect("a matrix");
         let errors = [apart(&r.matrix, resistance), apart(&m.matrix, mobility)];
         let inverse = (&r.matrix * &m.matrix - DMatrix::identity(12, 12)).amax();
         println!(

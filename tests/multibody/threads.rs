@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
-use axistokes::multibody::suspension::Answer;
-use axistokes::{Body, Frame, LinearFlow, Panels, Resolution, Silent, Suspension};
+use axistokes::{Answer, Body, Frame, LinearFlow, Panels, Resolution, Suspension};
 use nalgebra::{Point3, Vector3};
 
-use super::common::{direction, moving, pushed, random, spheroid};
+use super::common::{direction, given, moving, pushed, random, spheroid, try_with};
 
 fn solve(tolerance: f64, panels: usize, order: usize, modes: usize) -> Answer {
     let mut rng = fastrand::Rng::with_seed(31);
@@ -31,23 +30,21 @@ fn solve(tolerance: f64, panels: usize, order: usize, modes: usize) -> Answer {
             ..Body::new(curve, Frame::along(center, direction(&mut rng)))
         });
     }
-    let targets: Vec<Point3<f64>> = (0..50)
+    let probes: Vec<Point3<f64>> = (0..50)
         .map(|_| Point3::from(20.0 * random(&mut rng)) + Vector3::new(0.0, 0.0, 15.0))
         .collect();
     let suspension = Suspension {
-        targets: &targets,
+        probes,
         background: LinearFlow::shear(0.3, Vector3::x(), Vector3::z()),
         ..Suspension::new(bodies)
     };
-    suspension
-        .at_resolutions(&resolutions, tolerance, &Silent)
-        .expect("an answer")
+    try_with(&suspension, &given(&resolutions, tolerance)).expect("an answer")
 }
 
 /// Whether two answers are equal: no zero changes its sign and nothing is NaN, so this is bitwise.
 fn same(a: &Answer, b: &Answer) -> bool {
-    a.targets == b.targets
-        && a.iteration == b.iteration
+    a.probes == b.probes
+        && a.statistics.iteration == b.statistics.iteration
         && a.error_estimate == b.error_estimate
         && a.bodies.iter().zip(&b.bodies).all(|(a, b)| {
             a.motion == b.motion
@@ -55,8 +52,8 @@ fn same(a: &Answer, b: &Answer) -> bool {
                 && a.stresslet == b.stresslet
                 && a.boundary_error == b.boundary_error
         })
-        && (a.flow.bodies.iter().zip(&b.flow.bodies))
-            .all(|(a, b)| a.layers.double == b.layers.double && a.layers.single == b.layers.single)
+        && (a.flow.bodies().iter().zip(b.flow.bodies()))
+            .all(|(a, b)| a.disturbance.layers() == b.disturbance.layers())
 }
 
 #[test]
@@ -68,10 +65,14 @@ fn one_and_two_threads_agree_to_the_last_bit() {
     let one = with(1);
     println!(
         "{} points, {} near, {} iterations, estimate {:.1e}, {:?}",
-        one.points, one.near.0, one.iteration.iterations, one.error_estimate, one.timings
+        one.statistics.points,
+        one.statistics.near_points,
+        one.statistics.iterations,
+        one.error_estimate,
+        one.statistics.timings
     );
     // More than the direct sum takes, and near points: every part of the machinery is in use.
-    assert!(one.points > 5500 && one.near.0 > 100);
+    assert!(one.statistics.points > 5500 && one.statistics.near_points > 100);
     assert!(same(&one, &with(2)));
     assert!(same(&one, &with(2)));
     assert!(same(&one, &with(1)));

@@ -1,6 +1,6 @@
 //! Forces, torques and stresslets of two spheres, from four gaps down to a hundredth of a radius.
 
-use axistokes::{Body, Frame, Suspension};
+use axistokes::{Body, Frame, Slip, Suspension};
 use nalgebra::{Matrix3, Point3, Unit, Vector3};
 
 use super::common::{answer, ball, cells, direction, moving, number};
@@ -53,11 +53,11 @@ fn solved(row: &Row, axes: [Unit<Vector3<f64>>; 2], kept: bool, tolerance: f64) 
         _ => Matrix3::zeros(),
     };
     let frame = frames[row.moving];
-    let slip = |x: Vector3<f64>| {
+    let slip = Slip::new(move |x| {
         let from_center = frame.point_to_lab(x.into()) - frame.center();
         frame.vector_to_body(strain * from_center)
-    };
-    let mut bodies: Vec<Body<'_>> = frames
+    });
+    let mut bodies: Vec<Body> = frames
         .iter()
         .map(|&f| Body::new(curve.clone(), f))
         .collect();
@@ -68,12 +68,14 @@ fn solved(row: &Row, axes: [Unit<Vector3<f64>>; 2], kept: bool, tolerance: f64) 
         "turn_across" => moving(rest, Vector3::y()),
         _ => moving(rest, rest),
     };
-    let none = |_| Vector3::zeros();
+    let none = Slip::new(|_| Vector3::zeros());
     if kept {
-        bodies.iter_mut().for_each(|body| body.slip = Some(&none));
+        bodies
+            .iter_mut()
+            .for_each(|body| body.slip = Some(none.clone()));
     }
     if strain != Matrix3::zeros() {
-        bodies[row.moving].slip = Some(&slip);
+        bodies[row.moving].slip = Some(slip);
     }
     let answer = answer(&Suspension::new(bodies), tolerance);
     let along = matches!(row.motion.as_str(), "along" | "strain_zz");
@@ -140,12 +142,8 @@ fn solved(row: &Row, axes: [Unit<Vector3<f64>>; 2], kept: bool, tolerance: f64) 
         found.estimate / found.of_largest,
         resolution.panels.len(),
         resolution.modes,
-        answer.iteration.iterations,
-        answer.timings.refine
-            + answer.timings.factor
-            + answer.timings.iterate
-            + answer.timings.near
-            + answer.timings.estimate,
+        answer.statistics.iteration.iterations,
+        answer.statistics.timings.refine + answer.statistics.timings.estimate,
     );
     found
 }

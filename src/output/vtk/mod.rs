@@ -2,7 +2,7 @@
 //!
 //! | file | grid | point data |
 //! |---|---|---|
-//! | surfaces of all bodies, `.vtu` | quadrilaterals between rings, triangles at the poles; closed, normals outward | `traction`, `velocity`, `normal`, `body` (its number) |
+//! | surfaces of all bodies, `.vtu` | quadrilaterals between rings, triangles at the poles; closed, normals outward | `traction`, `velocity`, `normal`, `pressure`, `body` (its number) |
 //! | plane, `.vts` | structured, as in [`Plane`](crate::plane::Plane) | `velocity`, `pressure`, `inside`, `vtkGhostType` |
 //!
 //! Inside a body velocity and pressure are NaN, `inside` is 1, and `vtkGhostType` is 2 (hidden point), by which ParaView blanks the points.
@@ -11,7 +11,7 @@ mod plane;
 mod surface;
 
 pub use plane::plane_file;
-pub use surface::Surface;
+pub use surface::Mesh;
 
 use nalgebra::Vector3;
 use vtkio::model::{Attribute, ByteOrder, DataArray, DataSet, Version, Vtk};

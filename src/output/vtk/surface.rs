@@ -10,15 +10,17 @@ use vtkio::model::{
 };
 
 use super::{VtkError, bytes, flat, vectors};
-use crate::solve::{SolveError, Solved, SolvedBody};
 use bodies_of_revolution::Topology;
 use stokes_body::discretization::Discretization;
+use stokes_body::flow::AXIAL;
+use stokes_body::flow::SurfaceStress;
 use stokes_body::progress::Progress;
 use stokes_body::surface::SurfaceModes;
+use stokes_suspension::{BodyFlow, Flow, SuspensionError};
 
-/// The surfaces of all bodies as closed meshes with what acts on them, in the laboratory.
+/// The surfaces of bodies as closed meshes with what acts on them, in the laboratory.
 #[derive(Clone, Debug, Default)]
-pub struct Surface {
+pub struct Mesh {
     /// The vertices, body after body: the nodes of the generating curve, each turned to the azimuths in equal steps; then the poles, upper and lower.
     pub points: Vec<Point3<f64>>,
     /// Outward unit normals of the surface itself.
@@ -27,49 +29,52 @@ pub struct Surface {
     pub velocity: Vec<Vector3<f64>>,
     /// Force per area that the fluid exerts on the body, of the whole flow.
     pub traction: Vec<Vector3<f64>>,
+    /// Pressure of the fluid.
+    pub pressure: Vec<f64>,
     /// The number of each vertex's body, from 1, in the order of the case.
     pub body: Vec<u32>,
     /// Vertices of each cell, four or three, counterclockwise seen from outside.
     pub cells: Vec<Vec<u64>>,
 }
 
-impl Surface {
-    /// The surfaces of all bodies, each with so many azimuths.
+impl Mesh {
+    /// The surfaces of all bodies in a flow, each with so many azimuths.
     ///
     /// # Errors
-    /// If a quadrature rule is missing, or whoever waits has lost interest.
+    /// If a quadrature rule is missing, or the caller cancels.
     pub fn of(
-        solved: &Solved,
-        azimuths: impl Fn(&SolvedBody) -> usize,
+        flow: &Flow,
+        azimuths: impl Fn(&BodyFlow) -> usize,
         progress: &dyn Progress,
-    ) -> Result<Self, SolveError> {
-        let tractions = solved.tractions(progress)?;
-        let mut surface = Self::default();
-        for (number, (body, traction)) in (1..).zip(solved.bodies.iter().zip(&tractions)) {
-            surface
-                .add(body, number, traction, azimuths(body))
-                .map_err(|error| SolveError::Failed(error.to_string()))?;
+    ) -> Result<Self, SuspensionError> {
+        let all: Vec<usize> = (0..flow.bodies().len()).collect();
+        let stresses = flow.surface_stresses(&all, progress)?;
+        let mut mesh = Self::default();
+        for (number, (body, stress)) in (1..).zip(flow.bodies().iter().zip(stresses)) {
+            mesh.add(body, number, stress, azimuths(body))?;
         }
-        Ok(surface)
+        Ok(mesh)
     }
 
     fn add(
         &mut self,
-        body: &SolvedBody,
+        body: &BodyFlow,
         number: u32,
-        traction: &SurfaceModes,
+        stress: &SurfaceStress,
         azimuths: usize,
     ) -> Result<(), QuadratureError> {
-        let (nodes, frame) = (body.discretization(), body.frame());
+        let (nodes, frame) = (body.disturbance.discretization(), &body.frame);
         let velocity = body.surface_velocity();
+        let (traction, pressure) = (&stress.traction, &stress.pressure_along_axis);
         let first = self.points.len();
         // All four in the body's frame.
-        let mut add = |at: [Vector3<f64>; 4]| {
+        let mut add = |at: [Vector3<f64>; 4], pressure: f64| {
             let [point, normal, velocity, traction] = at;
             self.points.push(frame.point_to_lab(point.into()));
             self.normals.push(frame.vector_to_lab(normal));
             self.velocity.push(frame.vector_to_lab(velocity));
             self.traction.push(frame.vector_to_lab(traction));
+            self.pressure.push(pressure);
             self.body.push(number);
         };
         for (k, node) in nodes.nodes().iter().enumerate() {
@@ -78,23 +83,29 @@ impl Surface {
                 let (sin, cos) = theta.sin_cos();
                 let turned =
                     |[r, t, z]: [f64; 3]| Vector3::new(r * cos - t * sin, r * sin + t * cos, z);
-                add([
-                    turned([node.r, 0.0, node.z]),
-                    turned([node.normal[0], 0.0, node.normal[1]]),
-                    turned(velocity.at(k, theta)),
-                    turned(traction.at(k, theta)),
-                ]);
+                add(
+                    [
+                        turned([node.r, 0.0, node.z]),
+                        turned([node.normal[0], 0.0, node.normal[1]]),
+                        turned(velocity.at(k, theta)),
+                        turned(traction.at(k, theta)),
+                    ],
+                    pressure.at(k, theta)[AXIAL],
+                );
             }
         }
         let poles = nodes.curve().topology() == Topology::PoleToPole;
         if poles {
             for pole in [Pole::Upper, Pole::Lower] {
-                add([
-                    pole.point(nodes),
-                    pole.normal(),
-                    pole.value(nodes, velocity)?,
-                    pole.value(nodes, traction)?,
-                ]);
+                add(
+                    [
+                        pole.point(nodes),
+                        pole.normal(),
+                        pole.value(nodes, &velocity)?,
+                        pole.value(nodes, traction)?,
+                    ],
+                    pole.value(nodes, pressure)?.z,
+                );
             }
         }
         let mut cells = cells(nodes.nodes().len(), azimuths, poles);
@@ -134,6 +145,9 @@ impl Surface {
                     vectors("traction", &self.traction),
                     vectors("velocity", &self.velocity),
                     vectors("normal", &self.normals),
+                    Attribute::DataArray(
+                        DataArray::scalars("pressure", 1).with_vec(self.pressure.clone()),
+                    ),
                     Attribute::DataArray(DataArray::scalars("body", 1).with_vec(self.body.clone())),
                 ],
                 cell: Vec::new(),

@@ -2,10 +2,9 @@
 
 use std::sync::Arc;
 
+use axistokes::body::{Discretization, Stokeslet};
 use axistokes::geometry::curve::arc_length;
-use axistokes::{
-    Biconcave, Capsule, Discretization, GeneratingCurve, Panels, Spheroid, Stokeslet, Torus,
-};
+use axistokes::{Biconcave, Capsule, GeneratingCurve, Panels, Spheroid, Torus};
 use nalgebra::Vector3;
 
 use super::exact::Stokeslets;

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::fmt;
 
-use axistokes::{FlowGradientAt, Stokeslet};
+use axistokes::body::{FlowGradientAt, Stokeslet};
 use nalgebra::{Matrix3, Point3, Vector3};
 
 /// The flow of several point forces.

@@ -3,7 +3,7 @@
 use axistokes::body::flow::Side;
 use axistokes::body::layers::Layers;
 use axistokes::body::matrix::{LayerPotential, ModalMatrices};
-use axistokes::{Discretization, Flow, FlowGradientAt, SurfaceModes};
+use axistokes::body::{Discretization, Flow, FlowGradientAt, SurfaceModes};
 use nalgebra::{Matrix3, Vector3};
 
 use super::bodies::bodies;

@@ -2,7 +2,7 @@
 
 use axistokes::body::flow::Side;
 use axistokes::body::layers::Layers;
-use axistokes::{Discretization, Flow, FlowGradientAt, SurfaceModes};
+use axistokes::body::{Discretization, Flow, FlowGradientAt, SurfaceModes};
 use nalgebra::{Matrix3, Point3, Vector3};
 
 use super::bodies::bodies;

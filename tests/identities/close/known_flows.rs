@@ -3,6 +3,9 @@
 use std::sync::Arc;
 
 use axistokes::body::flow::Side;
+use axistokes::body::{
+    DirichletSolver, Discretization, FlowGradientAt, Formulation, Stokeslet, SurfaceModes,
+};
 use axistokes::case::{self, Case, Located};
 use axistokes::*;
 use nalgebra::Point3;

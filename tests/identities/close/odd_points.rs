@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use axistokes::body::flow::Side;
 use axistokes::body::layers::Layers;
+use axistokes::body::{Discretization, Flow, FlowError, FlowGradientAt, SurfaceModes};
 use axistokes::*;
 use nalgebra::{Point3, Vector3};
 

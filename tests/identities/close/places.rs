@@ -2,8 +2,10 @@
 
 use std::f64::consts::PI;
 
+use axistokes::Meridian;
+use axistokes::body::Discretization;
 use axistokes::body::flow::Side;
-use axistokes::{Discretization, Meridian, Outline};
+use axistokes::geometry::Outline;
 use nalgebra::Point3;
 
 /// Towards the fluid or into the body.

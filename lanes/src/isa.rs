@@ -2,7 +2,7 @@
 
 use pulp::{Arch, Scalar, Simd, WithSimd};
 
-use crate::Lanes;
+use crate::register::Lanes;
 
 /// How many digits of a reciprocal square root are wanted: as many as this many terms of a series about the seed of
 /// AVX-512 give. Instruction sets without a seed give all of them.
@@ -28,6 +28,20 @@ pub trait Isa: Simd {
 
     /// A bit for each lane, the lowest for the first: set where $a < b$.
     fn less_bits(self, a: Lanes<Self>, b: Lanes<Self>) -> usize;
+}
+
+impl<S: Isa> Lanes<S> {
+    /// $1/\sqrt x$ to `TERMS` terms (see [`Precision`]) where $x$ exceeds `least` $\ge 0$; 0 elsewhere.
+    #[inline(always)]
+    pub fn rsqrt_above<const TERMS: usize>(self, least: Self) -> Self {
+        self.0.rsqrt_above::<TERMS>(self, least)
+    }
+
+    /// A bit for each lane, the lowest for the first: set where `self < bound`.
+    #[inline(always)]
+    pub fn less_bits(self, bound: Self) -> usize {
+        self.0.less_bits(self, bound)
+    }
 }
 
 /// By hardware square root and division: where there is no seed for doubles.

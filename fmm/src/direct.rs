@@ -11,9 +11,10 @@ use f64_lanes::{Isa, Lanes, Precision, WithRoots, dispatch_roots};
 use rayon::prelude::*;
 
 use crate::FmmError;
+use crate::dispatch::{WithKernel, with_stokes};
 use crate::far::Far;
 use crate::flow::{Flow, Output, Strengths, check, check_positions};
-use crate::kernel::{Chain, Laplace, MOST, Pair, WithKernel, dot, with_stokes};
+use crate::kernel::{Chain, Laplace, MOST, Pair, dot};
 
 /// The flow of `strengths` at `sources`, seen at `targets`, which may be the sources themselves.
 ///

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use crate::dispatch::{WithKernel, with_stokes};
 use crate::error::FmmError;
 use crate::far::Far;
 use crate::flow::{Flow, Output, Singularities, Strengths, check, check_positions};
-use crate::kernel::{Laplace, MOST, WithKernel, with_stokes};
+use crate::kernel::{Laplace, MOST};
 use crate::operators::Operators;
 use crate::plan::{Planned, Scaled, plan};
 

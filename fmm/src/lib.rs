@@ -16,7 +16,7 @@
 //! | what | modules |
 //! |---|---|
 //! | prolate functions, and the splitting of $B = r/8\pi$ by them | `prolate`, `splitting`, `polynomial` |
-//! | kernels, pair by pair and among plane waves | `kernel`, `far`, `symbol` |
+//! | kernels, pair by pair and among plane waves | `kernel`, `far`, `symbol`, `dispatch` |
 //! | between points, grids and plane waves | `window`, `gridding`, `transform`, `transfer`, `translate`, `gemm` |
 //! | sizes for a tolerance, and all operators of them | `parameters`, `operators` |
 //! | which boxes have grids | `tree` |
@@ -24,6 +24,7 @@
 
 mod across;
 pub mod direct;
+mod dispatch;
 mod error;
 mod far;
 mod far_field;

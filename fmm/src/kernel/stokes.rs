@@ -7,7 +7,9 @@
 
 use f64_lanes::{Isa, Lanes};
 
-use super::{Chain, EIGHTH, MOST, Pair, broadcast, dot, scaled};
+use super::chain::{Chain, EIGHTH};
+use super::pair::{MOST, Pair};
+use super::vector::{broadcast, dot, scaled};
 
 /// Numbers per source: force 3, stresslet density 3 and normal 3, torque 3, flux 1, in this order. Of these
 /// `STRENGTHS` = 3 has the force, 6 the stresslet, 9 both, and 13 all. Numbers per target: velocity 3, pressure 1,

@@ -4,10 +4,15 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::boxes::{GriddedBox, Leaf, Level};
+use super::costs::Costs;
 use super::root::Root;
 use super::sorting::{DEPTH, Keys, octant};
-use super::{COLLEAGUES, Costs, GriddedBox, Leaf, Level, NONE};
 
+/// No such box.
+const NONE: u32 = u32::MAX;
+/// Colleagues a box can have, itself included.
+const COLLEAGUES: usize = 27;
 /// The slot of a cell among its own colleagues.
 const SELF: usize = COLLEAGUES / 2;
 /// Times the decision of every cell of a level is looked at again, given its colleagues'.

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::SortedPoints;
+use super::points::SortedPoints;
 use super::root::Root;
 
 /// Levels that keys tell apart.

@@ -1,3 +1,4 @@
+use std::ops::Range;
 use std::time::Instant;
 
 use proptest::prelude::*;
@@ -296,15 +297,14 @@ fn uniform(points: &[[f64; 3]], root: &Root, depth: usize) -> Tree {
         targets: None,
     };
     let cells = Cells::uniform(&keys, depth);
-    let (levels, leaves) = cells.boxes_and_leaves(root);
-    let mut tree = Tree {
+    let (levels, mut leaves) = cells.boxes_and_leaves(root);
+    near::fill(&mut leaves, &cells, root, &sources, None);
+    Tree {
         sources,
         targets: None,
         levels,
         leaves,
-    };
-    near::fill(&mut tree, &cells);
-    tree
+    }
 }
 
 #[test]

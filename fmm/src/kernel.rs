@@ -1,8 +1,9 @@
-//! The kernels, pair by pair: lanes are targets, sources are broadcast.
+//! The kernels, pair by pair. Lanes are targets; sources are broadcast.
 //!
-//! Every kernel is algebra on the radial chain of $B = r / 8\pi$, and the algebra of a full kernel and of its
-//! residual is the same: only the chain differs. It is kept in the units in which the full chain is
-//! $B_n = r^{1-2n}$, so $\beta_n = (\frac1r \frac{d}{dr})^n B = \kappa_n B_n$ with [`UNITS`] $\kappa_n$.
+//! Every kernel is algebra on the radial chain of $B = r / 8\pi$. The algebra is the same for a
+//! full kernel and for its residual: only the chain differs. The chain is kept in the units in
+//! which the full chain is $B_n = r^{1-2n}$, so
+//! $\beta_n = (\frac1r \frac{d}{dr})^n B = \kappa_n B_n$ with [`UNITS`] $\kappa_n$.
 
 mod chain;
 mod laplace;

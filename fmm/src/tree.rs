@@ -1,4 +1,5 @@
-//! The adaptive tree: boxes that carry grids, level by level, and the leaf cells that hang off them.
+//! The adaptive tree: boxes that carry grids, level by level, and the leaf cells that hang off
+//! them.
 
 mod boxes;
 mod costs;
@@ -28,11 +29,12 @@ const COUNTED: usize = 512;
 
 /// Boxes with grids, and leaves, over sources and targets.
 ///
-/// Level $\ell$ has boxes of side $L_\ell = L_0 / 2^\ell$. A box carries a grid ("is gridded") if the root or if
-/// its parent is and refining pays. The difference kernel of level $\ell$ acts between all gridded colleagues
-/// (boxes of one level that share a corner, and the box itself). Those children of a gridded box of level $\ell$
-/// that are not gridded themselves are leaves, of side $L_{\ell+1}$. Two points in leaves of sides $L$ and $L'$
-/// interact directly by the residual of length $\max(L, L')$.
+/// Level $\ell$ has boxes of side $L_\ell = L_0 / 2^\ell$. A box carries a grid ("is gridded") if
+/// it is the root, or if its parent is gridded and refining pays. The difference kernel of level
+/// $\ell$ acts between all gridded colleagues (boxes of one level that share a corner, and the box
+/// itself). Those children of a gridded box of level $\ell$ that are not gridded are leaves, of
+/// side $L_{\ell+1}$. Two points in leaves of sides $L$ and $L'$ interact directly by the residual
+/// of length $\max(L, L')$.
 #[derive(Clone, Debug)]
 pub(crate) struct Tree {
     pub sources: SortedPoints,
@@ -44,10 +46,12 @@ pub(crate) struct Tree {
 }
 
 impl Tree {
-    /// The tree over finite points, refined where `costs` say it pays. Targets are the sources if there are none.
+    /// The tree over finite points, refined where that pays according to `costs`. Without
+    /// `targets`, the targets are the sources.
     ///
-    /// The root is up to twice as large as the points need, so that leaves come in more sizes than powers of two:
-    /// each of a few sides is tried on a sample of the points, and the one with the cheapest tree is taken.
+    /// The root may be up to twice as large as the points need, so that the sides of leaves are not
+    /// limited to powers of two times the extent. A few sides are tried on a sample of the points,
+    /// and the side with the cheapest tree is taken.
     pub fn new(sources: &[[f64; 3]], targets: Option<&[[f64; 3]]>, costs: &Costs) -> Tree {
         let roots = Root::candidates(sources, targets);
         let points = sources.len() + targets.map_or(0, <[_]>::len);

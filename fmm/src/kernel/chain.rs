@@ -1,5 +1,5 @@
-//! The radial chain: repeated derivatives $\frac1r \frac{d}{dr}$ of $B = r / 8\pi$. Every kernel is made
-//! of them.
+//! The radial chain: repeated derivatives $\frac1r \frac{d}{dr}$ of $B = r / 8\pi$. Every kernel is
+//! made of them.
 
 use f64_lanes::{Isa, Lanes};
 
@@ -11,7 +11,8 @@ pub(crate) const EIGHTH: f64 = 0.125 * std::f64::consts::FRAC_1_PI;
 /// $\kappa_n$, $n = 1, \dots, 4$: what $\beta_n$ is of $r^{1-2n}$.
 pub(crate) const UNITS: [f64; 4] = [EIGHTH, -EIGHTH, 3.0 * EIGHTH, -15.0 * EIGHTH];
 
-/// The radial chain of one register of pairs: of the full kernels if `SINGULAR`, else of their residuals.
+/// The radial chain of one register of pairs: that of the full kernels if `SINGULAR`, otherwise
+/// that of their residuals.
 pub(crate) struct Chain<S: Isa, const SINGULAR: bool> {
     pub r2: Lanes<S>,
     /// $B_1, \dots, B_4$.
@@ -40,7 +41,8 @@ impl<S: Isa> Chain<S, true> {
 }
 
 impl<S: Isa> Chain<S, false> {
-    /// The full chain minus `mollified`, zero from $r^2$ = `reach2` on. Where $r = 0$ only the full part is left out.
+    /// The full chain minus `mollified`; zero where $r^2$ is `reach2` or more. At $r = 0$ only the
+    /// full part is left out.
     #[inline(always)]
     pub fn residual<const TERMS: usize>(
         r2: Lanes<S>,
@@ -56,7 +58,8 @@ impl<S: Isa> Chain<S, false> {
     }
 }
 
-/// The coefficients of the kernels. The closed forms of the full chain hold for $B_n = r^{1-2n}$ only.
+/// The coefficients of the kernels. The closed forms of the full chain hold only for
+/// $B_n = r^{1-2n}$.
 impl<S: Isa, const SINGULAR: bool> Chain<S, SINGULAR> {
     /// $p\,B_n - q\,r^2 B_{n+1}$, and $(p - q) B_n$ for the full chain.
     #[inline(always)]

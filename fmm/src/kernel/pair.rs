@@ -17,7 +17,8 @@ pub(crate) trait Pair: Copy + Send + Sync + 'static {
     const ORDERS: [usize; 2];
     /// Factors that the strengths are multiplied by before [`add`](Self::add) sees them.
     const FACTORS: [f64; MOST];
-    /// Whether sums are compiled for each precision of roots: where these are a good part of the work.
+    /// Whether sums are compiled for each precision of roots. This is done where the roots are a
+    /// good part of the work.
     const EACH_PRECISION: bool = Self::OUTPUTS <= 3 && Self::STRENGTHS <= 9;
 
     /// Adds to `out` what a source of this `strength` does at distances `x` (target minus source).

@@ -12,7 +12,8 @@ pub(crate) struct Level {
 
 #[derive(Clone, Debug)]
 pub(crate) struct GriddedBox {
-    /// Exact, as are differences of centres: a point lies within half a side of it, up to rounding of the point's.
+    /// The centre. It is exact, and so are differences of centres. A point of the box lies within
+    /// half a side of it, up to the point's rounding error.
     pub center: [f64; 3],
     /// Place among the boxes of the level, in box sides from the corner of the root.
     pub place: [i64; 3],

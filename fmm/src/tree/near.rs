@@ -104,8 +104,8 @@ fn bounds(
 
 /// Fills in the lists of the leaves that the cells of these points have.
 ///
-/// A leaf sees all colleagues of its own level over its own side, and those colleagues of its ancestors that are
-/// leaves over their sides.
+/// A leaf sees all colleagues of its own level within a reach of its own side. Of the colleagues of
+/// its ancestors it sees those that are leaves, within a reach of their sides.
 pub(super) fn fill(
     leaves: &mut [Leaf],
     cells: &Cells,

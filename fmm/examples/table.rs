@@ -1,7 +1,12 @@
-//! The table of the README, as Markdown: `cargo run --release -p stokes-fmm --example table > table.md`.
+//! The table of the README, as Markdown:
 //!
-//! Peers' figures were measured on the machine of ours, an AMD EPYC of family 26 with AVX-512, one thread; their spheroids are those of
-//! ours for DMK, and of 1000 points each for the others.
+//! ```text
+//! cargo run --release -p stokes-fmm --example table > table.md
+//! ```
+//!
+//! The figures of other codes were measured on the same machine as ours, an AMD EPYC of family 26
+//! with AVX-512, on one thread. Their spheroids are the same as ours for DMK, and of 1000 points
+//! each for the others.
 
 mod common;
 
@@ -13,7 +18,8 @@ use common::{
     Measured, Method, Outputs,
 };
 
-/// Prints our speed beside that of others, in thousands of points per second, as a table in Markdown.
+/// Prints our speed beside that of other codes, in thousands of points per second, as a table in
+/// Markdown.
 #[derive(Parser)]
 struct Arguments {
     /// Leaves out cases of more points.
@@ -23,8 +29,9 @@ struct Arguments {
     threads: usize,
 }
 
-/// A case, and thousands of points per second of others on one thread: of DMK (b325994), of PVFMM (07a67a6, or STKFMM 56bfce3 on it where both
-/// kernels are summed) and of FMM3D (38c0655 with its fast kernels).
+/// A case, and thousands of points per second of other codes on one thread: of DMK (b325994), of
+/// PVFMM (07a67a6, or STKFMM 56bfce3 on top of it where both kernels are summed) and of FMM3D
+/// (38c0655 with its fast kernels).
 type Row = (Kernel, Distribution, usize, f64, [Option<f64>; 3]);
 
 const ROWS: [Row; 18] = [

@@ -16,7 +16,8 @@ pub(crate) struct Across {
 }
 
 impl Across {
-    /// Waves of the potentials of the boxes of numbers `batches`, of side `side`, batch by batch and in each field by field.
+    /// Waves of the potentials of the boxes of numbers `batches`, of side `side`: batch by batch,
+    /// and within a batch field by field.
     pub fn forward(
         &self,
         fields: Fields,
@@ -59,7 +60,8 @@ impl Across {
         });
     }
 
-    /// Puts one potential on the grids of the boxes of these numbers: `waves_of(batch, out)` gives the waves of a batch.
+    /// Writes one potential to the grids of the boxes of these numbers. `waves_of(batch, out)`
+    /// gives the waves of a batch.
     pub fn backward(
         &self,
         shape: GridShape,

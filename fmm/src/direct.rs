@@ -1,4 +1,5 @@
-//! Direct sums, pair by pair: the fastest way for a few thousand points, and the measure of every other.
+//! Direct sums, pair by pair: the fastest method for a few thousand points, and the reference for
+//! all other methods.
 
 #![expect(
     clippy::needless_range_loop,
@@ -11,22 +12,25 @@ use f64_lanes::{Isa, Lanes, Precision, WithRoots, dispatch_roots};
 use rayon::prelude::*;
 
 use crate::FmmError;
+use crate::dispatch::{WithKernel, with_stokes};
 use crate::far::Far;
 use crate::flow::{Flow, Output, Strengths, check, check_positions};
-use crate::kernel::{Chain, Laplace, MOST, Pair, WithKernel, dot, with_stokes};
+use crate::kernel::{Chain, Laplace, MOST, Pair, dot};
 
-/// The flow of `strengths` at `sources`, seen at `targets`, which may be the sources themselves.
+/// The flow of `strengths` at `sources`, evaluated at `targets`, which may be the sources
+/// themselves.
 ///
-/// A pair at distance zero contributes nothing, and so does one nearer than 1e-40 of the largest coordinate.
-/// Coordinates up to 1e100 in magnitude are taken. Lengths are scaled to the largest coordinate, so that nothing overflows or underflows on the
-/// way but for strengths or distances beyond 1e±150 of that. Without a `tolerance` sums are exact to
-/// rounding; with one (1e-12 to 1e-1) each pair's contribution is, relative to its size, within it.
-/// The result does not depend on the number of threads.
+/// A pair at distance zero contributes nothing, and so does a pair nearer than 1e-40 of the largest
+/// coordinate. Coordinates may be up to 1e100 in magnitude. Lengths are scaled to the largest
+/// coordinate, so that nothing overflows or underflows on the way except for strengths or distances
+/// beyond 1e±150 of that. Without a `tolerance` sums are exact to rounding; with one (1e-12 to
+/// 1e-1) the error of each pair's contribution, relative to its size, is within it. The result does
+/// not depend on the number of threads.
 ///
 /// # Errors
 ///
-/// Arrays of different lengths, numbers that are not finite, coordinates beyond 1e100, a tolerance outside its
-/// range.
+/// Arrays of different lengths, numbers that are not finite, coordinates beyond 1e100, a tolerance
+/// outside its range.
 ///
 /// # Examples
 ///
@@ -68,8 +72,8 @@ pub fn sum(
     ))
 }
 
-/// The potential $\sum q / 4 \pi r$ of charges, and its gradient if `gradient` (else empty), at `targets`, which
-/// may be the sources themselves. All else is as in [`sum`].
+/// The potential $\sum q / 4 \pi r$ of charges at `targets`, which may be the sources themselves,
+/// and its gradient if `gradient` is true (otherwise it is empty). All else is as in [`sum`].
 ///
 /// # Errors
 ///
@@ -251,7 +255,8 @@ impl<P: Pair> WithRoots for ChunkSum<'_, P> {
     }
 }
 
-/// A block of sources against all targets, `REGISTERS` registers of which share the broadcast of a source.
+/// A block of sources against all targets. Each broadcast of a source serves `REGISTERS` registers
+/// of targets.
 #[inline(always)]
 fn add_block<S: Isa, P: Pair, const TERMS: usize, const REGISTERS: usize>(
     simd: S,
@@ -292,7 +297,7 @@ fn add_block<S: Isa, P: Pair, const TERMS: usize, const REGISTERS: usize>(
     }
 }
 
-/// Square of the least distance, relative to the largest coordinate, at which two points are not one.
+/// Square of the distance, relative to the largest coordinate, up to which two points count as one.
 const LEAST: f64 = 1e-80;
 
 #[cfg(test)]

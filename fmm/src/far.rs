@@ -8,16 +8,17 @@ pub(crate) const FIELDS: usize = 4;
 
 /// The far side of a kernel.
 ///
-/// A source lays on each of `DENSITIES` scalar fields $c\\,\delta(y - y_0) + d\cdot\nabla\delta(y - y_0)$, with
-/// its charge $c$ and, if there are `DIPOLES`, its dipole $d$. The kernel's symbol makes `POTENTIALS` scalar
-/// fields of these, and a target reads them and, for `GRADIENTS`, their derivatives.
+/// A source has on each of `DENSITIES` scalar fields the density
+/// $c\\,\delta(y - y_0) + d\cdot\nabla\delta(y - y_0)$, with its charge $c$ and, if there are
+/// `DIPOLES`, its dipole $d$. The symbol of the kernel turns these into `POTENTIALS` scalar fields.
+/// A target reads these and, if there are `GRADIENTS`, their derivatives.
 pub(crate) trait Far: Pair {
     const DENSITIES: usize;
     const POTENTIALS: usize;
     const DIPOLES: bool;
     const GRADIENTS: bool;
-    /// Digits of margin: one for dipoles and one for pressures, which are derivatives of what Stokeslets drive, and two for gradients
-    /// whatever drives them.
+    /// Digits of margin: one for dipoles and one for pressures, which are derivatives of the flow
+    /// of Stokeslets, and two for gradients of any flow.
     const DERIVATIVES: usize;
 
     /// The kernel as products among plane waves.
@@ -75,7 +76,8 @@ impl<const STRENGTHS: usize, const OUTPUTS: usize> Far for Stokes<STRENGTHS, OUT
             charge[..3].copy_from_slice(&strength[..3]);
         }
         if STRENGTHS != 3 {
-            // A stresslet is a force dipole, symmetric, and a sink: T_ijk = S_ij,k + S_ik,j + delta_jk lap B_,i.
+            // A stresslet is a symmetric force dipole and a sink: T_ijk = S_ij,k + S_ik,j +
+            // delta_jk lap B_,i.
             let first = if STRENGTHS == 6 { 0 } else { 3 };
             let (q, n) = (&strength[first..][..3], &strength[first + 3..][..3]);
             for (j, dipole) in dipole[..3].iter_mut().enumerate() {

@@ -1,4 +1,5 @@
-//! The smooth part of the sums: charges to grids, up the tree, across by plane waves, down again, to the targets.
+//! The smooth part of the sums: from charges to grids, up the tree, across by plane waves, down
+//! again, and to the targets.
 
 use std::ops::Range;
 
@@ -12,8 +13,8 @@ use crate::transform::BATCH;
 use crate::translate::Slab;
 use crate::tree::{GriddedBox, SortedPoints, Tree};
 
-/// Charges of the sources, in the order of the tree: for each density its charge and, behind all charges, for
-/// each density its dipole along x, y and z.
+/// Charges of the sources, in the order of the tree: first the charge for each density, then for
+/// each density the dipole along x, y and z.
 pub(crate) type Charges = Vec<Vec<f64>>;
 
 /// How the boxes of the tree work together.
@@ -234,8 +235,8 @@ impl FarField {
             );
     }
 
-    /// Adds the potentials and, behind them, the derivatives of as many of them as there are outputs left, to
-    /// `outputs`: columns over the targets in the tree's order.
+    /// Adds to `outputs`, columns over the targets in the tree's order, first the potentials, then
+    /// the derivatives of as many of them as there are outputs left.
     pub fn read(
         &self,
         operators: &Operators,

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use crate::dispatch::{WithKernel, with_stokes};
 use crate::error::FmmError;
 use crate::far::Far;
 use crate::flow::{Flow, Output, Singularities, Strengths, check, check_positions};
-use crate::kernel::{Laplace, MOST, WithKernel, with_stokes};
+use crate::kernel::{Laplace, MOST};
 use crate::operators::Operators;
 use crate::plan::{Planned, Scaled, plan};
 
@@ -14,7 +15,8 @@ use crate::plan::{Planned, Scaled, plan};
 pub struct Points<'a> {
     /// Places of the sources.
     pub sources: &'a [[f64; 3]],
-    /// Places of the targets; `None` for the sources themselves. A source has no effect on a target in the same place.
+    /// Places of the targets; `None` if they are the sources. A source has no effect on a target in
+    /// the same place.
     pub targets: Option<&'a [[f64; 3]]>,
 }
 
@@ -35,7 +37,8 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// The power of two that takes the extent of all points to between 1 and 2, or an error for points that no sum is possible of.
+    /// The power of two that scales the extent of all points to between 1 and 2, or an error if the
+    /// points allow no sum.
     fn scale(&self) -> Result<f64, FmmError> {
         let most = self.sources.len().max(self.targets.map_or(0, <[_]>::len));
         if most >= u32::MAX as usize {
@@ -92,10 +95,12 @@ impl WithKernel for MakePlan {
     }
 }
 
-/// Sums of Stokeslets, stresslets, rotlets and sources over one set of points: planned once, applied to any number of strengths.
+/// Sums of Stokeslets, stresslets, rotlets and sources over one set of points, planned once and
+/// applied to any number of strengths.
 ///
-/// The time and memory of a sum grow with the number of points, not with its square. Sums of so few points that all pairs take
-/// less time are made directly. Results are the same bits on any number of threads.
+/// The time and memory of a sum grow with the number of points, not with its square. If
+/// there are so few points that it takes less time, all pairs are summed directly. Results are the
+/// same bits on any number of threads.
 pub struct StokesSum {
     planned: Box<dyn Planned>,
     operators: Arc<Operators>,
@@ -108,15 +113,21 @@ pub struct StokesSum {
 }
 
 impl StokesSum {
-    /// Plans sums of `singularities` to the `tolerance`, relative in the Euclidean norm over all targets, in each output by itself, for
-    /// strengths that are as good as random. Where the terms of an output cancel, its error is relative to what they would make if they did not: gradients of
-    /// forces that are all alike, flows of stresslets or of forces that add to nothing seen from far away. Ask for more digits there.
+    /// Plans sums of `singularities` to the `tolerance`.
     ///
-    /// Points nearer than about 1e-40 of the extent of all are taken for one. Points in one place cost all their pairs.
+    /// The tolerance is relative, in the Euclidean norm over all targets, for each output
+    /// separately, for strengths that behave like random ones. Where the terms of an output cancel,
+    /// its error is relative to what they would add up to without cancellation. This is so for
+    /// gradients of forces that are all alike, and for flows of stresslets, or of forces whose sum
+    /// is zero, seen from far away. Ask for more digits there.
+    ///
+    /// Points nearer than about 1e-40 of the extent of all points are taken for one. Points in one
+    /// place cost all their pairs.
     ///
     /// # Errors
     ///
-    /// Coordinates that are not finite or beyond 1e100, 2^32 - 1 points or more, and tolerances outside of 1e-12 to 1e-1.
+    /// Coordinates that are not finite or beyond 1e100, 2^32 - 1 points or more, and tolerances
+    /// outside of 1e-12 to 1e-1.
     pub fn new(
         points: Points<'_>,
         singularities: Singularities,
@@ -172,7 +183,8 @@ impl StokesSum {
         })
     }
 
-    /// What the sums are accurate to, relative in the Euclidean norm over all targets, in each output by itself.
+    /// The accuracy of the sums, relative in the Euclidean norm over all targets, for each output
+    /// separately.
     pub fn tolerance(&self) -> f64 {
         self.tolerance
     }
@@ -181,7 +193,8 @@ impl StokesSum {
     ///
     /// # Errors
     ///
-    /// Strengths that are not finite, of another number than there are sources, or of a kind that was not planned for.
+    /// Strengths that are not finite, whose number differs from that of the sources, or of a kind
+    /// that was not planned for.
     pub fn apply(&self, strengths: &Strengths<'_>) -> Result<Flow, FmmError> {
         strengths.validate(self.sources)?;
         self.singularities.admits(strengths)?;
@@ -201,7 +214,8 @@ impl StokesSum {
     }
 }
 
-/// Potentials of charges: $\phi = \sum q / 4\pi r$, and their gradients. All else is as for [`StokesSum`].
+/// Sums of Laplace charges: potentials $\phi = \sum q / 4\pi r$, and their gradients. All else is
+/// as for [`StokesSum`].
 pub struct LaplaceSum {
     planned: Box<dyn Planned>,
     operators: Arc<Operators>,

@@ -14,7 +14,8 @@ use crate::kernel::MOST;
 /// * rotlet of torque $t$: $u = t \times x/8\pi r^3$, $p = 0$;
 /// * source of flux $s$: $u = s\,x/4\pi r^3$, $p = 0$
 ///
-/// (Pozrikidis, *Boundary Integral and Singularity Methods for Linearized Viscous Flow*, 1992, chapters 2 and 7).
+/// (Pozrikidis, *Boundary Integral and Singularity Methods for Linearized Viscous Flow*, 1992,
+/// chapters 2 and 7).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Strengths<'a> {
     /// Forces.
@@ -27,10 +28,12 @@ pub struct Strengths<'a> {
     pub fluxes: Option<&'a [f64]>,
 }
 
-/// The two vectors of each stresslet: of the double-layer potential, density times weight and unit normal.
+/// The two vectors of each stresslet. For a double-layer potential they are the density times the
+/// quadrature weight, and the unit normal.
 ///
-/// A constant $q$ on a closed surface with outward normals makes the flow $q$ inside and none outside: the double layer jumps by $-q$ on the way
-/// out. $q$ is a velocity times an area, so velocities do not depend on the viscosity; pressures are to be multiplied by it.
+/// A constant $q$ on a closed surface with outward normals makes the flow $q$ inside and none
+/// outside: the double layer jumps by $-q$ from inside to outside. $q$ is a velocity times an area,
+/// so velocities do not depend on the viscosity; pressures must be multiplied by it.
 #[derive(Clone, Copy, Debug)]
 pub struct Stresslets<'a> {
     /// $q$.
@@ -63,7 +66,8 @@ pub struct Flow {
 }
 
 impl Flow {
-    /// The numbers of a sum, `at(target, output)`, as a flow; they are in lengths `scale` times the user's.
+    /// The flow whose numbers are `at(target, output)`, computed in lengths that are `scale` times
+    /// the user's.
     pub(crate) fn assemble(
         output: Output,
         targets: usize,
@@ -86,8 +90,8 @@ impl Flow {
         flow
     }
 
-    /// $\sigma_{ij} = -p\,\delta_{ij} + \partial_j u_i + \partial_i u_j$ at each target; empty if the gradient
-    /// was not asked for.
+    /// $\sigma_{ij} = -p\,\delta_{ij} + \partial_j u_i + \partial_i u_j$ at each target; empty if
+    /// the gradient was not asked for.
     pub fn stress(&self) -> Vec<[[f64; 3]; 3]> {
         let points = self.gradient.iter().zip(&self.pressure);
         points.map(|(gradient, &p)| stress(gradient, p)).collect()
@@ -151,8 +155,9 @@ impl Singularities {
         }
     }
 
-    /// The flow of all but the Stokeslets is of one order more in the length: in lengths `scale` times the user's their strengths take
-    /// that factor.
+    /// Scales a strength to lengths that are `scale` times the user's. The flow of all
+    /// singularities except Stokeslets has one more order in the length, so their strengths take
+    /// the factor `scale`.
     pub(crate) fn weigh(self, strength: &mut [f64; MOST], scale: f64) {
         match self {
             Self::Stokeslets => {}
@@ -240,8 +245,8 @@ pub(crate) fn check<const N: usize>(
     Ok(())
 }
 
-/// Refuses positions that are not finite, or farther from the origin than their differences can be squared.
-/// Returns the largest coordinate.
+/// Refuses positions that are not finite, or so far from the origin that the square of a difference
+/// overflows. Returns the largest coordinate.
 pub(crate) fn check_positions(what: &'static str, positions: &[[f64; 3]]) -> Result<f64, FmmError> {
     check(what, positions, positions.len())?;
     let farthest = positions

@@ -18,8 +18,8 @@ pub(crate) enum Into {
     Add,
 }
 
-/// $C = AB$ or $C \mathrel{+}= AB$ with $A$ of `rows` x `depth` and $B$ of `depth` x `columns`; `columns` is a
-/// multiple of 8, `c_stride` the doubles from one row of $C$ to the next.
+/// $C = AB$ or $C \mathrel{+}= AB$ with $A$ of `rows` x `depth` and $B$ of `depth` x `columns`;
+/// `columns` is a multiple of 8, `c_stride` the doubles from one row of $C$ to the next.
 #[inline(always)]
 pub(crate) fn gemm<S: Simd>(
     simd: S,

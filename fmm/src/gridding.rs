@@ -1,7 +1,7 @@
 //! From points to the grid of their box, and back.
 //!
-//! A grid is a buffer of `D` densities one after the other, each $g \times g$ rows `[x][y]` of `padded(g)` numbers along $z$. Buffers
-//! that start at a multiple of 64 bytes are the fastest.
+//! A grid is a buffer of `D` densities one after the other. Each has $g \times g$ rows `[x][y]` of
+//! `padded(g)` numbers along $z$. Buffers that start at a multiple of 64 bytes are the fastest.
 
 use std::ops::Range;
 
@@ -19,8 +19,10 @@ pub(crate) struct Cube {
     pub side: f64,
 }
 
-/// Adds to the grid of `cube` $\sum_i [c_{di} + \sum_k d_{dki}\,\partial_{x_k}]\,\varphi(x - y_i)$, for each density $d$: charges $c$ and,
-/// if `DIPOLES`, dipole strengths $d_{dk}$ (per unit length of the user, as `cube` is).
+/// Adds to the grid of `cube` the sum
+/// $\sum_i [c_{di} + \sum_k d_{dki}\,\partial_{x_k}]\,\varphi(x - y_i)$ for each density $d$, with
+/// charges $c$ and, if `DIPOLES`, dipole strengths $d_{dk}$ (per unit length of the user, as is
+/// `cube`).
 ///
 /// All arrays are over the points, which are inside `cube`.
 pub(crate) fn spread<const D: usize, const DIPOLES: bool>(
@@ -40,9 +42,11 @@ pub(crate) fn spread<const D: usize, const DIPOLES: bool>(
     });
 }
 
-/// The `D` grids at points inside `cube`: $\sum_x \varphi(y_i - x)\,G_d(x)$ and, if `GRADIENTS`, its derivatives by $y_i$.
+/// Interpolates the `D` grids at points inside `cube`: $\sum_x \varphi(y_i - x)\,G_d(x)$ and, if
+/// `GRADIENTS`, its derivatives with respect to $y_i$.
 ///
-/// Point by point into `values`: `D` values, then with `GRADIENTS` the `D` gradients, three numbers each.
+/// Results go to `values` point by point: `D` values and then, if `GRADIENTS`, the `D` gradients,
+/// three numbers each.
 pub(crate) fn interpolate<const D: usize, const GRADIENTS: bool>(
     window: &Window,
     cube: Cube,
@@ -88,7 +92,8 @@ impl<'a> Placing<'a> {
         }
     }
 
-    /// First grid point in the window of a coordinate, and the argument of the window's polynomials.
+    /// First grid point in the window of a coordinate, and the argument of the window's
+    /// polynomials.
     #[inline(always)]
     fn start(&self, axis: usize, coordinate: f64) -> (usize, f64) {
         let last = self.grid_points - self.width;
@@ -282,7 +287,8 @@ impl<S: Isa, const N: usize> Row<S, N> {
     }
 }
 
-/// Points whose stencils are made before they are used, density after density: what one density takes of a grid stays in the cache.
+/// Number of points whose stencils are made before they are used. The densities then follow one
+/// after the other, so that the part of a grid that one density uses stays in the cache.
 const BLOCK: usize = 8;
 
 struct Spread<'a, const D: usize, const DIPOLES: bool> {
@@ -308,7 +314,8 @@ impl<const D: usize, const DIPOLES: bool> WithIsa for Spread<'_, D, DIPOLES> {
             for (d, grid) in (0..D).zip(grids) {
                 for (stencil, i) in stencils.iter().zip(block.clone()) {
                     let charge = self.charges[d][i];
-                    // The window rises with the grid point as it falls with the place of its own point.
+                    // The window's derivative with respect to the grid point is minus that with
+                    // respect to the point.
                     let dipole = if DIPOLES {
                         self.dipoles[d].map(|axis| -axis[i])
                     } else {
@@ -517,7 +524,8 @@ mod tests {
         }
     }
 
-    /// $\frac1{\hat\varphi}\sum_x G_d(x)\,e^{-ik\cdot x}$, real and imaginary, with $k$ and $x$ in box units.
+    /// $\frac1{\hat\varphi}\sum_x G_d(x)\,e^{-ik\cdot x}$, real and imaginary, with $k$ and $x$ in
+    /// box units.
     fn wave(window: &Window, grid: &[f64], d: usize, k: [f64; 3]) -> [f64; 2] {
         let g = window.points();
         let at = |i: usize| (i as f64 - 0.5 * (g - 1) as f64) * window.spacing();
@@ -671,7 +679,8 @@ mod tests {
         assert!(grid.iter().all(|x| *x == 0.0));
     }
 
-    /// Nanoseconds per point, best of several: `cargo test --release -p stokes-fmm gridding_speed -- --ignored --nocapture`.
+    /// Nanoseconds per point, best of several:
+    /// `cargo test --release -p stokes-fmm gridding_speed -- --ignored --nocapture`.
     #[test]
     #[ignore = "a measurement"]
     fn gridding_speed() {

@@ -1,29 +1,32 @@
-//! Fast summation of Stokeslets, stresslets, rotlets and sources of Stokes flow, and of Laplace charges, in free space.
+//! Fast summation of Stokeslets, stresslets, rotlets and sources of Stokes flow, and of Laplace
+//! charges, in free space.
 //!
-//! | what | where |
+//! | subject | items |
 //! |---|---|
-//! | sums planned once for their points and applied to any strengths | [`StokesSum`], [`LaplaceSum`] |
-//! | where sources and targets are | [`Points`] |
+//! | sums planned for given points and applied to any strengths | [`StokesSum`], [`LaplaceSum`] |
+//! | places of sources and targets | [`Points`] |
 //! | what is summed | [`Singularities`], [`Strengths`], [`Stresslets`] |
-//! | what comes out | [`Output`], [`Flow`] |
+//! | results | [`Output`], [`Flow`] |
 //! | sums pair by pair | [`direct`] |
 //! | a tree code, for comparison | [`TreeCode`] |
-//! | what is refused | [`FmmError`] |
+//! | errors | [`FmmError`] |
 //!
-//! The method is dual-space multilevel kernel splitting (af Klinteberg, Greengard, Jiang, Tornberg 2025, arXiv 2509.21471) on uniform
-//! grids. Inside, from what does not depend on the points to what does:
+//! The method is dual-space multilevel kernel splitting (af Klinteberg, Greengard, Jiang, Tornberg
+//! 2025, arXiv 2509.21471) on uniform grids. The modules, from those that do not depend on the
+//! points to those that do:
 //!
-//! | what | modules |
-//! |---|---|
-//! | prolate functions, and the splitting of $B = r/8\pi$ by them | `prolate`, `splitting`, `polynomial` |
-//! | kernels, pair by pair and among plane waves | `kernel`, `far`, `symbol` |
-//! | between points, grids and plane waves | `window`, `gridding`, `transform`, `transfer`, `translate`, `gemm` |
-//! | sizes for a tolerance, and all operators of them | `parameters`, `operators` |
-//! | which boxes have grids | `tree` |
-//! | the two halves of a sum, and both together | `near_field`, `far_field`, `plan` |
+//! * prolate functions, and the splitting of $B = r/8\pi$ by them: `prolate`, `splitting`,
+//!   `polynomial`;
+//! * kernels, pair by pair and among plane waves: `kernel`, `far`, `symbol`, `dispatch`;
+//! * between points, grids and plane waves: `window`, `gridding`, `transform`, `transfer`,
+//!   `translate`, `gemm`;
+//! * sizes for a tolerance, and all operators of these sizes: `parameters`, `operators`;
+//! * the boxes that have grids: `tree`;
+//! * the two halves of a sum, and both together: `near_field`, `far_field`, `plan`.
 
 mod across;
 pub mod direct;
+mod dispatch;
 mod error;
 mod far;
 mod far_field;

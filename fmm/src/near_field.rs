@@ -1,8 +1,9 @@
 //! The near field: residual sums between the points of neighbouring leaves.
 //!
-//! The residual ends at its reach, but a leaf sees whole leaves around it, of whose pairs no more than
-//! $4\pi/81 = 16\%$ are in reach. So points are sorted into tiles of eight neighbours, and a tile of targets picks
-//! first the tiles of sources, then the single sources within reach of its bounding box. Only those are summed.
+//! The residual ends at its reach, but a leaf sees the whole leaves around it, and no more than
+//! $4\pi/81 = 16\%$ of the pairs with these are within reach. So points are sorted into tiles of
+//! eight neighbours. A tile of targets first selects the tiles of sources, then the single sources,
+//! that are within reach of its bounding box. Only those are summed.
 
 #![expect(
     clippy::needless_range_loop,
@@ -20,9 +21,11 @@ use crate::tree::{SortedPoints, Tree};
 
 /// Points per tile: one register of the widest instruction set.
 const TILE: usize = PADDING;
-/// Sources whose polynomials are evaluated together: lists are filled up to a multiple of this many.
+/// Number of sources whose polynomials are evaluated together. Lists are filled up to a multiple of
+/// it.
 const TOGETHER: usize = 4;
-/// Sources whose chains are made before any of them is used: the sums then have the registers for themselves.
+/// Number of sources whose chains are made before any of them is used. The sums then have the
+/// registers for themselves.
 const BLOCK: usize = 16;
 /// Place in a tile that no point holds.
 const VACANT: u32 = u32::MAX;
@@ -37,7 +40,8 @@ pub(crate) struct NearField {
     near: Vec<Vec<NearTiles>>,
     /// The lengths of residuals that occur.
     reaches: Vec<f64>,
-    /// The mollified chain, in the units of the kernels: coefficients in $s = 2 (r/L)^2 - 1$, highest first.
+    /// The mollified chain in the units of the kernels: coefficients in $s = 2 (r/L)^2 - 1$,
+    /// highest power first.
     chain: [Vec<f64>; 4],
     precision: Precision,
 }
@@ -56,7 +60,8 @@ struct Tiles {
     points: Vec<u32>,
     /// Coordinates, place by place; infinite where vacant.
     positions: [Vec<f64>; 3],
-    /// Bounding boxes, tile by tile; eight more at infinity, so that eight can be read from any tile on.
+    /// Bounding boxes of the tiles, and eight more boxes at infinity, so that eight boxes can be
+    /// read starting from any tile.
     low: [Vec<f64>; 3],
     high: [Vec<f64>; 3],
 }
@@ -102,7 +107,8 @@ impl Tiles {
     }
 }
 
-/// Sorts points so that each eight in turn are neighbours: halves along the longest side of their bounding box.
+/// Sorts points so that each eight in turn are neighbours, by halving along the longest side of the
+/// bounding box.
 fn bisect(group: &mut [u32], positions: &[Vec<f64>; 3]) {
     if group.len() <= TILE {
         return;
@@ -129,7 +135,8 @@ fn bisect(group: &mut [u32], positions: &[Vec<f64>; 3]) {
 
 impl NearField {
     /// `mollified[n - 1]` are the coefficients in $s = 2t - 1$, highest first, of $b_n(t)$,
-    /// $\beta_n = L^{1-2n} b_n((r/L)^2)$. Ranges of sources in the tree's near lists must be unions of leaves.
+    /// $\beta_n = L^{1-2n} b_n((r/L)^2)$. Ranges of sources in the tree's near lists must be unions
+    /// of leaves.
     pub fn new(tree: &Tree, mollified: &[Vec<f64>; 4], precision: Precision) -> Self {
         let mut by_place: Vec<&Range<u32>> = tree.leaves.iter().map(|leaf| &leaf.sources).collect();
         by_place.retain(|range| !range.is_empty());
@@ -192,7 +199,8 @@ impl NearField {
         self.targets.as_ref().unwrap_or(&self.sources)
     }
 
-    /// Adds the near field of `strengths` to `outputs`, both in the tree's order, one array per number.
+    /// Adds the near field of `strengths` to `outputs`. Both are in the tree's order, one array per
+    /// number.
     pub fn add<P: Pair>(&self, strengths: &[Vec<f64>], outputs: &mut [Vec<f64>]) {
         let records = self.records::<P>(strengths);
         let polynomials = self.polynomials(P::ORDERS);
@@ -227,8 +235,8 @@ impl NearField {
         });
     }
 
-    /// Position and weighed strengths of each place, place after place, and after the last one a source of no
-    /// strength.
+    /// Position and weighted strengths of each place, place after place, and after the last one a
+    /// source of strength zero.
     fn records<P: Pair>(&self, strengths: &[Vec<f64>]) -> Vec<f64> {
         let stride = 3 + P::STRENGTHS;
         let places = self.sources.points.len();
@@ -253,7 +261,8 @@ impl NearField {
         records
     }
 
-    /// For each reach $L$ the coefficients of $L^{1-2n} b_n$ for the orders $n$ from first to last, side by side.
+    /// For each reach $L$ the coefficients of $L^{1-2n} b_n$, with the orders $n$ from first to
+    /// last side by side.
     fn polynomials(&self, [first, last]: [usize; 2]) -> Vec<Vec<f64>> {
         let orders = &self.chain[first - 1..last];
         let terms = orders.iter().map(Vec::len).max().unwrap_or(0);
@@ -287,8 +296,8 @@ struct Bounds {
 }
 
 impl Bounds {
-    /// A bit for each of the eight boxes from number `first` on that is nearer than the root of `reach2`; boxes are
-    /// points where `low` is `high`.
+    /// One bit for each of the eight boxes from number `first` on: set if its distance from these
+    /// bounds is less than the root of `reach2`. Boxes are points where `low` is `high`.
     #[inline(always)]
     fn near<S: Isa>(
         &self,
@@ -334,7 +343,8 @@ const PLACES: [[u8; TILE]; 256] = {
     places
 };
 
-/// Writes `first` plus the place of each bit of `bits` to `list`, whatever beyond them, and returns how many they are.
+/// Writes `first` plus the place of each set bit of `bits` to `list`, and returns how many there
+/// are. Entries beyond these have no meaning.
 #[inline(always)]
 fn unpack(bits: usize, first: usize, list: &mut [u32]) -> usize {
     let (places, list) = (&PLACES[bits & 255], &mut list[..TILE]);
@@ -391,8 +401,8 @@ impl NearField {
         }
     }
 
-    /// Lists the sources within reach of the bounding box of a tile of targets, run by run of one reach, each run
-    /// filled up with the source of no strength.
+    /// Lists the sources within reach of the bounding box of a tile of targets. Sources of one
+    /// reach form a run, and each run is filled up with the source of strength zero.
     #[inline(always)]
     fn list<S: Isa>(&self, simd: S, tile: usize, list: &mut List) {
         let bounds = self.bounds(tile);
@@ -521,8 +531,9 @@ struct Residual<'a> {
 }
 
 impl Residual<'_> {
-    /// Makes the chains of the sources in `places`, from number `first` of the block on. By Horner's scheme, all
-    /// polynomials abreast: each multiply-add waits for the one before.
+    /// Makes the chains of the sources in `places`, from number `first` of the block on. Horner's
+    /// scheme evaluates all polynomials side by side, because each multiply-add waits for the one
+    /// before.
     #[inline(always)]
     fn chains<S: Isa, P: Pair, const TERMS: usize>(
         &self,

@@ -29,7 +29,8 @@ pub(crate) struct Operators {
     pub level: Across,
     pub turns: Turns,
     pub transfer: Transfer,
-    /// Mollified chain, order by order from 1, as polynomials in $s = 2(r/L)^2 - 1$, highest power first.
+    /// Mollified chain, order by order from 1, as polynomials in $s = 2(r/L)^2 - 1$, highest power
+    /// first.
     pub mollified: [Vec<f64>; 4],
 }
 
@@ -91,7 +92,8 @@ impl Operators {
     }
 }
 
-/// Does `work` on one thread: factorisations that are shared between threads depend, in their last digits, on how many there are.
+/// Does `work` on one thread: the last digits of factorisations that are shared between threads
+/// depend on the number of threads.
 fn alone<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     match ThreadPoolBuilder::new().num_threads(1).build() {
         Ok(pool) => pool.install(work),
@@ -108,7 +110,8 @@ pub(crate) struct Costs {
 }
 
 impl Costs {
-    /// Counted operations times what they took on one core with AVX-512 (see the benches); only ratios matter.
+    /// Counted operations times their cost, measured on one core with AVX-512 (see the benches).
+    /// Only ratios matter.
     fn new<K: Far>(parameters: &Parameters, ball: &Ball, reach: usize, terms: usize) -> Self {
         let numbers = (K::STRENGTHS + K::OUTPUTS) as f64;
         let orders = (K::ORDERS[1] + 1 - K::ORDERS[0]) as f64;

@@ -24,8 +24,9 @@ pub(crate) struct Parameters {
 }
 
 impl Parameters {
-    /// For a relative error of `tolerance` (1e-12 to 1e-1) in flows that are up to the `derivatives`-th derivatives of what Stokeslets
-    /// drive: one for stresslets, rotlets and sources, one more for pressures and gradients.
+    /// Parameters for a relative error of `tolerance` (1e-12 to 1e-1) in flows that are derivatives
+    /// of order up to `derivatives` of the flow of Stokeslets: one for stresslets, rotlets and
+    /// sources, one more for pressures and gradients.
     ///
     /// Truncation, window and polynomials are each given a part of the tolerance.
     pub fn for_tolerance(tolerance: f64, derivatives: usize) -> Self {
@@ -41,13 +42,14 @@ impl Parameters {
     }
 }
 
-/// Truncation makes an error of about $3\,\psi(1)/\psi(0)$ in the velocity of Stokeslets, and more by this factor for every derivative: most of
-/// it is at the end of the band and at the end of the residual.
+/// Truncation makes an error of about $3\,\psi(1)/\psi(0)$ in the velocity of Stokeslets. For every
+/// derivative it is [`TRUNCATION_PER_DERIVATIVE`] times larger. Most of it is at the end of the
+/// band and at the end of the residual.
 const TRUNCATION: f64 = 3.0;
 const TRUNCATION_PER_DERIVATIVE: f64 = 10.0;
 
-/// Grid points for each that the shortest wave needs at least. With fewer, the grids of children cannot be brought to those of their parents:
-/// measured in whole sums.
+/// Grid points for each point that the shortest wave needs at least. With fewer, the grids of
+/// children cannot be transferred to those of their parents. The value was measured in whole sums.
 const OVERSAMPLING: f64 = 1.42;
 
 /// Parts of the tolerance.
@@ -75,7 +77,8 @@ fn root_precision(error: f64) -> Precision {
     }
 }
 
-/// Width and grid points of the window that costs least of those good to `error`; the best there is if none is.
+/// Width and grid points of the cheapest window whose error is at most `error`; the most accurate
+/// window if there is none.
 fn cheapest_window(waves: usize, error: f64, derivatives: usize) -> (usize, usize) {
     let slopes = derivatives > 0;
     let spectrum = spectrum(waves, derivatives);
@@ -106,7 +109,8 @@ fn cheapest_window(waves: usize, error: f64, derivatives: usize) -> (usize, usiz
     (best.1, best.2)
 }
 
-/// Cost of a box per density, in registers of products: its points one by one, and its grid to its waves axis by axis.
+/// Cost of a box per density, in products of registers: of its points one by one, and of the
+/// transform of its grid to waves axis by axis.
 fn cost(width: usize, points: usize, waves: usize) -> f64 {
     const BOX_POINTS: f64 = 400.0;
     let (w, g, j) = (width as f64, points as f64, waves as f64);
@@ -117,7 +121,8 @@ fn cost(width: usize, points: usize, waves: usize) -> f64 {
     spreading + transform / PADDING as f64
 }
 
-/// The waves of differences in box units, and the size of the flow that Stokeslets and `derivatives` make at each, in a shell of wave vectors.
+/// The waves of differences in box units, in a shell of wave vectors, each with the size of the
+/// flow that Stokeslets and `derivatives` make at it.
 fn spectrum(waves: usize, derivatives: usize) -> Vec<(f64, f64)> {
     let splitting = Splitting::new(waves);
     (1..waves)
@@ -131,8 +136,8 @@ fn spectrum(waves: usize, derivatives: usize) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Relative error that a window makes in a flow of this spectrum, root mean square over waves and worst over places: of the window itself or,
-/// with `slopes`, of its derivative.
+/// Relative error that a window makes in a flow of this spectrum, root mean square over waves and
+/// largest over places. It is the error of the window itself or, with `slopes`, of its derivative.
 fn window_error(width: usize, points: usize, spectrum: &[(f64, f64)], slopes: bool) -> f64 {
     const PLACES: usize = 6;
     let spacing = 1.0 / (points - width + 1) as f64;
@@ -163,7 +168,7 @@ fn window_error(width: usize, points: usize, spectrum: &[(f64, f64)], slopes: bo
                 real += value * (k * x).cos() / transform;
                 imaginary += value * (k * x).sin() / transform;
             }
-            // Of the derivative the transform is -i k times that of the window, and so is what it should be.
+            // Exactly, the transform of the window is 1 here and that of its derivative -i k.
             let (lost_real, lost_imaginary) = if slopes {
                 (real / k, 1.0 + imaginary / k)
             } else {
@@ -206,7 +211,8 @@ mod tests {
 
     #[test]
     fn waves_are_as_many_as_peers_take() {
-        // af Klinteberg et al. 2025 take c = 10.47, 17.80, 25.13, 33.51 for Stokeslets: pi J / 3 of these.
+        // af Klinteberg et al. 2025 take c = 10.47, 17.80, 25.13, 33.51 for Stokeslets; these are
+        // pi J / 3.
         for (digits, waves) in [(3, 10), (6, 17), (9, 24), (12, 32)] {
             let found = fewest_waves(10f64.powi(-digits), 0);
             assert!(found.abs_diff(waves) <= 1, "{digits}: {found}");

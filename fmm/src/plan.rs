@@ -61,7 +61,7 @@ pub(crate) fn plan<K: Far>(points: Scaled, operators: Arc<Operators>) -> Box<dyn
     let costs = operators.costs;
     let targets = points.targets.as_ref().unwrap_or(&points.sources);
     let direct = points.sources.len() as f64 * targets.len() as f64 * costs.direct;
-    // A root alone never pays.
+    // A tree of one box never beats the direct sum.
     if direct < costs.tree.grid {
         return Box::new(Directly::<K> {
             points,
@@ -112,7 +112,8 @@ pub(crate) struct Plan<K> {
     tree: Tree,
     near: NearField,
     far: FarField,
-    /// Grids of earlier applications, used again: fresh memory costs more to get than grids to fill.
+    /// Grids of earlier applications, used again: getting fresh memory costs more than clearing
+    /// grids.
     grids: Mutex<Vec<Grids>>,
     kernel: PhantomData<fn() -> K>,
 }

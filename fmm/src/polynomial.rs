@@ -18,8 +18,9 @@ pub(crate) fn node(i: usize, count: usize) -> f64 {
     (PI * (i as f64 + 0.5) / count as f64).cos()
 }
 
-/// The polynomial that comes closest to the samples in the sense of least squares, errors counted in what is allowed, and the largest
-/// error so counted. Coefficients of powers of $s$, highest first.
+/// The polynomial that fits the samples in the sense of least squares, with errors relative to what
+/// is allowed, and the largest of these errors. Coefficients of powers of $s$ are highest power
+/// first.
 pub(crate) fn fit(samples: &[Sample], degree: usize) -> (Vec<f64>, f64) {
     let chebyshev = |s: f64, j: usize| (j as f64 * s.acos()).cos();
     let design = Mat::from_fn(samples.len(), degree + 1, |i, j| {
@@ -34,7 +35,8 @@ pub(crate) fn fit(samples: &[Sample], degree: usize) -> (Vec<f64>, f64) {
     (powers(&series), error)
 }
 
-/// Coefficients of a Chebyshev series in powers of $s$, highest first, by $T_{k+1} = 2sT_k - T_{k-1}$.
+/// Coefficients of a Chebyshev series in powers of $s$, highest power first, by
+/// $T_{k+1} = 2sT_k - T_{k-1}$.
 fn powers(series: &[f64]) -> Vec<f64> {
     let count = series.len();
     let mut sum = vec![0.0; count];
@@ -79,7 +81,8 @@ mod tests {
 
     #[test]
     fn parabola_by_a_line() {
-        // s^2 = 1/2 + T_2/2: over Chebyshev points the closest line is 1/2, half a unit away at most.
+        // s^2 = 1/2 + T_2/2: over Chebyshev points the closest line is the constant 1/2, with
+        // errors of at most 1/2.
         let samples: Vec<Sample> = (0..16)
             .map(|i| {
                 let s = node(i, 16);

@@ -2,11 +2,13 @@
 
 use panel_quadrature::legendre;
 
-/// $\psi = \psi_0^c$: of all functions on $[-1, 1]$ the one whose Fourier transform is most concentrated in $[-c, c]$.
+/// The prolate function $\psi = \psi_0^c$: of all functions on $[-1, 1]$ the one whose Fourier
+/// transform is most concentrated in $[-c, c]$.
 ///
-/// Normalised by $\psi(0) = 1$. Its transform is itself:
+/// It is normalised by $\psi(0) = 1$. Its transform is the function itself:
 /// $\int_0^1 \psi(x) \cos(kx)\,dx = C_0\,\psi(k/c)$ for $|k| \le c$, with $C_0 = \int_0^1 \psi$
-/// (Slepian & Pollak 1961; Osipov, Rokhlin & Xiao, *Prolate Spheroidal Wave Functions of Order Zero*, 2013).
+/// (Slepian & Pollak 1961; Osipov, Rokhlin & Xiao, *Prolate Spheroidal Wave Functions of Order
+/// Zero*, 2013).
 #[derive(Clone, Debug)]
 pub(crate) struct Prolate {
     bandwidth: f64,
@@ -55,13 +57,15 @@ impl Prolate {
     }
 }
 
-/// Legendre coefficients of $\psi_0^c$: with $\bar P_k$ normalised, the vector of the smallest eigenvalue of
+/// Legendre coefficients of $\psi_0^c$: with $\bar P_k$ normalised, the vector of the smallest
+/// eigenvalue of
 ///
 /// $$ T_{kk} = k(k+1) + \frac{2k(k+1) - 1}{(2k+3)(2k-1)}\,c^2, \qquad
 ///    T_{k,k+2} = \frac{(k+1)(k+2)}{(2k+3)\sqrt{(2k+1)(2k+5)}}\,c^2, \qquad k \text{ even} $$
 ///
-/// (Xiao, Rokhlin & Yarvin 2001, eq. 2.19). The second eigenvalue is at least five times the first, so inverse
-/// iteration at zero converges by that factor a step; the matrix is positive definite and needs no pivots.
+/// (Xiao, Rokhlin & Yarvin 2001, eq. 2.19). The second eigenvalue is at least five times the first,
+/// so inverse iteration at zero converges by that factor a step; the matrix is positive definite
+/// and needs no pivots.
 fn legendre_coefficients(bandwidth: f64) -> Vec<f64> {
     const STEPS: usize = 30;
     let c2 = bandwidth * bandwidth;
@@ -109,7 +113,8 @@ fn legendre_coefficients(bandwidth: f64) -> Vec<f64> {
     coefficients
 }
 
-/// Coefficients of the integral from 0 of an even series, by $\int P_k = (P_{k+1} - P_{k-1})/(2k+1)$.
+/// Coefficients of the integral from 0 of an even series, by
+/// $\int P_k = (P_{k+1} - P_{k-1})/(2k+1)$.
 fn antiderivative(even: &[f64]) -> Vec<f64> {
     let mut integral = vec![0.0; even.len() + 1];
     for (k, c) in even.iter().enumerate() {
@@ -128,8 +133,9 @@ mod tests {
 
     use super::*;
 
-    /// $c$, $x$, $\psi$, $\psi'$, $\int_0^x\psi$: the same expansion in mpmath with 60 digits, by a Rayleigh quotient
-    /// iteration; the values agree with scipy.special.pro_ang1 as far as that goes (it loses digits above c = 50).
+    /// Rows $c$, $x$, $\psi$, $\psi'$, $\int_0^x\psi$, from the same expansion in mpmath with 60
+    /// digits, by a Rayleigh quotient iteration. The values agree with scipy.special.pro_ang1 to
+    /// its accuracy (it loses digits above c = 50).
     #[expect(clippy::excessive_precision)]
     const REFERENCE: [[f64; 5]; 8] = [
         [

@@ -1,5 +1,5 @@
-//! The split of $B = r/8\pi$ at a length $L$ into a mollified part $B_L$, band-limited to $kL \le c$, and a
-//! residual that vanishes beyond $r = L$, both up to [`Splitting::truncation`].
+//! The split of $B = r/8\pi$ at a length $L$ into a mollified part $B_L$, band-limited to
+//! $kL \le c$, and a residual that vanishes beyond $r = L$, both up to [`Splitting::truncation`].
 //!
 //! $dB_L/dr = \Phi(r/L)/8\pi$ with $\Phi(\rho) = \frac1{C_0}\int_0^\rho \psi$, and the transform is
 //! $-\gamma(kL)/k^4$ (af Klinteberg, Greengard, Jiang & Tornberg 2025).
@@ -11,15 +11,16 @@ use panel_quadrature::GaussLegendre;
 use crate::polynomial::{self, Sample};
 use crate::prolate::Prolate;
 
-/// Radius $R$ at which [`Splitting::free_space`] cuts $B$ off, in sides of the root: the diagonal of a cube and the reach
-/// of the mollifier of $B_{L_0/2}$.
+/// Radius $R$ at which [`Splitting::free_space`] cuts off $B$, in sides of the root: the diagonal
+/// of a cube plus the reach of the mollifier of $B_{L_0/2}$.
 pub(crate) const ROOT_RADIUS: f64 = 1.7320508075688772 + 0.5;
 
-/// Period of the waves of the root, in its sides: images of the cut-off, mollified $B$ do not touch the cube.
+/// Period of the waves of the root, in its sides. It is so large that images of the cut-off,
+/// mollified $B$ do not touch the cube.
 pub(crate) const ROOT_PERIOD: f64 = 1.0 + ROOT_RADIUS + 0.5;
 
-/// What cutting $B$ off at $R$ (sides of the root) adds to the Stokeslet, $-\mathsf I/4\pi R$: to be taken from the velocity for
-/// each force.
+/// What cutting off $B$ at $R$ (in sides of the root) adds to the Stokeslet, $-\mathsf I/4\pi R$.
+/// It must be subtracted from the velocity for each force.
 pub(crate) const ROOT_STOKESLET: f64 = -1.0 / (4.0 * PI * ROOT_RADIUS);
 
 /// What cutting $B$ off at $R$ (sides of the root) adds to the potential of a charge, $-3/8\pi R$.
@@ -35,7 +36,8 @@ pub(crate) struct Splitting {
 }
 
 impl Splitting {
-    /// The split whose difference kernel $B_{L/2} - B_L$ has the waves $k_j = 2\pi j/3L$, $|j| < J$, per axis: $c = \pi J/3$.
+    /// The split whose difference kernel $B_{L/2} - B_L$ has the waves $k_j = 2\pi j/3L$,
+    /// $|j| < J$, per axis. Then $c = \pi J/3$.
     pub fn new(waves: usize) -> Self {
         let bandwidth = waves as f64 * PI / 3.0;
         let rule = GaussLegendre::new(40 + waves).expect("an order within the limits");
@@ -51,15 +53,18 @@ impl Splitting {
         self.psi.bandwidth()
     }
 
-    /// $\gamma(kL) = \psi(x) - x\psi'(x)/2$ at $x = kL/c \le 1$; 0 beyond. The transform of $B_L$ is $-\gamma(kL)/k^4$.
+    /// $\gamma(kL) = \psi(x) - x\psi'(x)/2$ at $x = kL/c \le 1$, and 0 beyond. The transform of
+    /// $B_L$ is $-\gamma(kL)/k^4$.
     pub fn gamma(&self, kl: f64) -> f64 {
         let x = kl / self.bandwidth();
         self.psi.value(x) - 0.5 * x * self.psi.derivative(x)
     }
 
-    /// Transform of $B_{1/2} - B_1$, $[\gamma(k) - \gamma(k/2)]/k^4$, without its cancellation at small $k$ and with its limit at 0.
+    /// Transform of $B_{1/2} - B_1$, $[\gamma(k) - \gamma(k/2)]/k^4$, computed without the
+    /// cancellation at small $k$ and with its limit at 0.
     ///
-    /// Other lengths by scaling: $B_{L/2} - B_L$ has $L^4$ times the value at $kL$.
+    /// Other lengths follow by scaling: the transform of $B_{L/2} - B_L$ is $L^4$ times the value
+    /// at $kL$.
     pub fn difference(&self, k: f64) -> f64 {
         if k * k > self.bandwidth() {
             (self.gamma(k) - self.gamma(0.5 * k)) / k.powi(4)
@@ -68,7 +73,8 @@ impl Splitting {
         }
     }
 
-    /// Transform of $B - B_1$ by its integral: $-\frac12\int_0^1 \rho^3\,\frac{j_1(k\rho)}{k\rho}\,[1 - \Phi(\rho)]\,d\rho$.
+    /// Transform of $B - B_1$ by its integral:
+    /// $-\frac12\int_0^1 \rho^3\,\frac{j_1(k\rho)}{k\rho}\,[1 - \Phi(\rho)]\,d\rho$.
     fn residual_transform(&self, k: f64) -> f64 {
         let c0 = self.psi.integral(1.0);
         self.rule()
@@ -79,10 +85,13 @@ impl Splitting {
             .sum()
     }
 
-    /// $b_n(t)$, $t = (r/L)^2$: the chain of the mollified part is $(\frac1r\frac d{dr})^n B_L = L^{1-2n}\,b_n(t)$.
+    /// $b_n(t)$, $t = (r/L)^2$, of the chain of the mollified part:
+    /// $(\frac1r\frac d{dr})^n B_L = L^{1-2n}\,b_n(t)$.
     ///
-    /// Since $\psi$ is its own transform, $b_1 = \Phi(\rho)/8\pi\rho = \frac1{8\pi C_0^2}\int_0^1\psi(x)\,j_0(c\rho x)\,dx$, and
-    /// $\frac1z\frac d{dz}\frac{j_m(z)}{z^m} = -\frac{j_{m+1}(z)}{z^{m+1}}$ does the rest. The error is a few roundings of $b_n(0)$.
+    /// Since $\psi$ is its own transform,
+    /// $b_1 = \Phi(\rho)/8\pi\rho = \frac1{8\pi C_0^2}\int_0^1\psi(x)\,j_0(c\rho x)\,dx$. The other
+    /// orders follow from $\frac1z\frac d{dz}\frac{j_m(z)}{z^m} = -\frac{j_{m+1}(z)}{z^{m+1}}$. The
+    /// error is a few rounding errors of $b_n(0)$.
     pub fn mollified(&self, order: usize, t: f64) -> f64 {
         let (c, c0) = (self.bandwidth(), self.psi.integral(1.0));
         let m = order - 1;
@@ -99,10 +108,11 @@ impl Splitting {
         sum / (8.0 * PI * c0 * c0)
     }
 
-    /// $b_n$ as a polynomial in $s = 2t - 1$, highest power first: the shortest that is right to `accuracy`.
+    /// $b_n$ as a polynomial in $s = 2t - 1$, highest power first: the shortest one with an error
+    /// of at most `accuracy`.
     ///
-    /// The error is measured against what the polynomial is subtracted from, $|t^{1/2-n} b^{\text{full}}_n|$, and where that exceeds
-    /// $|b_n(0)|$ against the latter.
+    /// The error is relative to what the polynomial is subtracted from,
+    /// $|t^{1/2-n} b^{\text{full}}_n|$, and where that exceeds $|b_n(0)|$ relative to $|b_n(0)|$.
     pub fn polynomial(&self, order: usize, accuracy: f64) -> Vec<f64> {
         const SAMPLES: usize = 160;
         const LONGEST: usize = 60;
@@ -131,11 +141,13 @@ impl Splitting {
         polynomial
     }
 
-    /// Transform of the mollified $B_{L_0/2}$ in free space, for sources and targets in a cube of side $L_0 = 1$: of
-    /// $\frac1{8\pi}(r - \frac{r^2}{2R} - \frac R2)$ cut off at $R$ = [`ROOT_RADIUS`], times $\gamma(k/2)$. Other sides by scaling
-    /// with $L_0^4$, at $kL_0$.
+    /// Transform of the mollified $B_{L_0/2}$ in free space, for sources and targets in a cube of
+    /// side $L_0 = 1$. It is the transform of $\frac1{8\pi}(r - \frac{r^2}{2R} - \frac R2)$ cut off
+    /// at $R$ = [`ROOT_RADIUS`], times $\gamma(k/2)$. Other sides follow by scaling with $L_0^4$,
+    /// at $kL_0$.
     ///
-    /// The quadratic and the constant add [`ROOT_STOKESLET`] to the Stokeslet and nothing to its pressure and gradient nor to any other flow.
+    /// The quadratic and the constant term add [`ROOT_STOKESLET`] to the Stokeslet. They add
+    /// nothing to its pressure and gradient, and nothing to any other flow.
     pub fn free_space(&self, k: f64) -> f64 {
         truncated_distance(k * ROOT_RADIUS) * ROOT_RADIUS.powi(4) * self.gamma(0.5 * k)
     }
@@ -171,7 +183,8 @@ fn scaled_bessel(m: usize, z: f64) -> f64 {
     j / z.powi(m as i32)
 }
 
-/// $-\left(1 + \tfrac12\cos x - \tfrac32\frac{\sin x}x\right)/x^4$, the transform of the distance cut off at radius 1, at $x = kR$.
+/// Transform of the distance cut off at radius 1, at $x = kR$:
+/// $-\left(1 + \tfrac12\cos x - \tfrac32\frac{\sin x}x\right)/x^4$.
 fn truncated_distance(x: f64) -> f64 {
     if x.abs() > 1.0 {
         return -(1.0 + 0.5 * x.cos() - 1.5 * x.sin() / x) / x.powi(4);
@@ -194,7 +207,8 @@ mod tests {
     const ORDERS: usize = 4;
 
     #[expect(clippy::excessive_precision)]
-    /// Waves, $t$, $b_1..b_4$: from $\Phi$, $\psi$, $\psi'$, $\psi''$ in closed form, mpmath with 60 digits.
+    /// Waves, $t$, $b_1..b_4$, from closed forms in $\Phi$, $\psi$, $\psi'$, $\psi''$ by mpmath
+    /// with 60 digits.
     const CHAIN: [(usize, f64, [f64; ORDERS]); 6] = [
         (
             17,
@@ -259,7 +273,8 @@ mod tests {
     ];
 
     #[expect(clippy::excessive_precision)]
-    /// Waves, $k$, transform of the difference (mpmath, 60 digits) and of the root's kernel (its integral by mpmath's quadrature).
+    /// Waves, $k$, transform of the difference (mpmath, 60 digits) and transform of the root's
+    /// kernel (its integral by the quadrature of mpmath).
     const TRANSFORMS: [(usize, f64, f64, f64); 8] = [
         (17, 0.01, -0.00031968306535108771, -0.20683534503874992),
         (17, 0.4, -0.00031882748061423854, -0.1991179356026505),

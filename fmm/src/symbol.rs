@@ -1,9 +1,9 @@
-//! What a kernel is among plane waves.
+//! The symbol of a kernel: its action on plane waves.
 //!
-//! One scalar does everything: the biharmonic function $B = r/8\pi$ split at a length, with transform
-//! $-\Gamma(k)/k^4$. Every kernel here is a differential operator on $B$, so every potential is a sum of
-//! products of densities with tables over the waves, and of exchanges of cosines and sines where an odd
-//! derivative is taken.
+//! All kernels come from one scalar: the biharmonic function $B = r/8\pi$ split at a length, with
+//! transform $-\Gamma(k)/k^4$. Every kernel here is a differential operator on $B$. So every
+//! potential is a sum of densities, each multiplied by a table over the waves, with cosines and
+//! sines exchanged for every odd derivative.
 
 use std::f64::consts::PI;
 
@@ -26,7 +26,8 @@ pub(crate) struct Term {
     pub polynomial: fn([f64; 3]) -> f64,
     /// Degree of the polynomial.
     pub degree: i32,
-    /// What the root, of side 1, gets from the sum of the density to make up for the cut of $B$ in free space.
+    /// What is added to the root, of side 1, per unit sum of the density, to correct for the
+    /// cut-off of $B$ in free space.
     pub constant: f64,
 }
 
@@ -34,8 +35,8 @@ fn square(k: [f64; 3]) -> f64 {
     k.iter().map(|k| k * k).sum()
 }
 
-/// The symbol of Stokes flow: densities are the force (3) and, if `flux`, sources; potentials are the velocity
-/// (3) and, if `pressure`, the pressure.
+/// The symbol of Stokes flow. Densities are the force (3) and, if `flux`, sources; potentials are
+/// the velocity (3) and, if `pressure`, the pressure.
 pub(crate) fn stokes(flux: bool, pressure: bool) -> Vec<Term> {
     let across: [fn([f64; 3]) -> f64; 3] = [
         |[_, y, z]| y * y + z * z,
@@ -123,8 +124,9 @@ struct Weighted {
 }
 
 impl Symbol {
-    /// Waves `spacing` times $j$, with `biharmonic(k)` the transform of the part of $B$ in question, $-\Gamma/k^4$; in the
-    /// `free_space` case $B$ is cut off, and what that does is put back.
+    /// Symbol at the waves `spacing` times $j$. `biharmonic(k)` is the transform $-\Gamma/k^4$ of
+    /// the part of $B$ in question. In the `free_space` case $B$ is cut off, and the effect of that
+    /// is corrected.
     pub fn new(
         terms: &[Term],
         ball: &Ball,
@@ -162,7 +164,8 @@ impl Symbol {
         }
     }
 
-    /// Potentials of densities, both `[field][class of x][class of y][wave][class of z][8]`, in boxes of side `side`.
+    /// Potentials of densities, both `[field][class of x][class of y][wave][class of z][8]`, in
+    /// boxes of side `side`.
     #[inline(always)]
     pub fn apply<S: Simd>(&self, simd: S, side: f64, densities: &[f64], potentials: &mut [f64]) {
         let field = CLASSES * self.waves * BATCH;
@@ -175,7 +178,8 @@ impl Symbol {
             {
                 let scale = term.sign * side.powi(1 - term.degree);
                 let density = &densities[term.density * field..][..field];
-                // Axis x is the highest of the classes' digits, y the next, z stands after the wave.
+                // Axis x is the highest digit of the class number, y the next; z stands after the
+                // wave.
                 let [x, y, z] = [0, 1, 2].map(|axis| term.axes >> axis & 1);
                 for class in 0..4 {
                     let [class_x, class_y] = [class >> 1, class & 1];

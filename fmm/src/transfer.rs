@@ -37,8 +37,8 @@ pub(crate) struct Transfer {
     shape: GridShape,
     /// Points of the parent that a child reaches, from its own side of the parent's grid.
     reach: usize,
-    /// For the lower and the upper child: `reach` x `points`, rows padded to whole registers, from the lowest
-    /// point reached.
+    /// Matrices for the lower and the upper child, each of `reach` x `points`, with rows padded to
+    /// whole registers. The first row is the lowest point reached.
     matrix: [Vec<f64>; 2],
     /// Its transpose, `points` x `reach`, rows padded too.
     transpose: [Vec<f64>; 2],
@@ -52,14 +52,16 @@ pub(crate) struct TransferScratch {
 }
 
 impl Transfer {
-    /// `lower`: parent's points x child's points, for the lower child; rows beyond `reach` are zero.
+    /// `lower`: parent's points x child's points, for the lower child; rows beyond `reach` are
+    /// zero.
     pub fn new(points: usize, reach: usize, lower: &[f64]) -> Self {
         let shape = GridShape { points };
         let entry = |upper: usize, row: usize, column: usize| {
             if upper == 0 {
                 lower[row * points + column]
             } else {
-                // Row 0 is the lowest point reached by the upper child, the mirror image of the last.
+                // Row 0 is the lowest point that the upper child reaches: the mirror image of the
+                // last row.
                 lower[(reach - 1 - row) * points + points - 1 - column]
             }
         };

@@ -1,13 +1,15 @@
 //! Grids of eight boxes to plane waves and back.
 //!
-//! The waves of a box of side 1 are real: with $t_0 = \cos$ and $t_1 = \sin$, the coefficients of a density
-//! $\sum q\\,\delta(y)$ are
+//! The waves of a box of side 1 are real: with $t_0 = \cos$ and $t_1 = \sin$, the coefficients of a
+//! density $\sum q\\,\delta(y)$ are
 //!
-//! $$ Q^{abc}(k) = \sum q\\, t_a(k_x y_x)\\, t_b(k_y y_y)\\, t_c(k_z y_z), \qquad k = \kappa (j_x, j_y, j_z),\ j \ge 0,\ \lvert k\rvert < K, $$
+//! $$ Q^{abc}(k) = \sum q\\, t_a(k_x y_x)\\, t_b(k_y y_y)\\, t_c(k_z y_z), \qquad
+//!    k = \kappa (j_x, j_y, j_z),\ j \ge 0,\ \lvert k\rvert < K, $$
 //!
-//! so only an eighth of a ball is kept, eight *classes* for each wave. A grid is folded about its middle
-//! into its even and odd parts, each of which meets the cosines or the sines alone. Lanes are eight boxes:
-//! every axis is then contracted the same way, no row needs padding, and rows stop where the ball does.
+//! so only an eighth of a ball is kept, eight *classes* for each wave. A grid is folded about its
+//! middle into its even and odd parts, each of which meets the cosines or the sines alone. Lanes
+//! are eight boxes: every axis is then contracted the same way, no row needs padding, and rows stop
+//! where the ball does.
 
 use f64_lanes::Lanes;
 use pulp::Simd;
@@ -385,7 +387,8 @@ impl Transform {
     }
 }
 
-/// Even and odd part about the middle of a pair of columns: upper point plus and minus its mirror image.
+/// Even and odd part, about the middle, of a pair of columns: the upper point plus and minus its
+/// mirror image.
 #[inline(always)]
 fn fold<S: Simd>(simd: S, columns: &[f64], folded: &mut [Vec<f64>; 2]) {
     let rows = columns.chunks_exact(2 * BATCH);
@@ -406,7 +409,8 @@ fn fold<S: Simd>(simd: S, columns: &[f64], folded: &mut [Vec<f64>; 2]) {
     }
 }
 
-/// The columns whose folded halves are given, each half of which met its own waves: the transpose of [`fold`].
+/// The columns whose folded halves are given, after each half was multiplied by its own waves: the
+/// transpose of [`fold`].
 #[inline(always)]
 fn unfold<S: Simd>(simd: S, folded: &[Vec<f64>; 2], columns: &mut [f64]) {
     let half = columns.len() / (4 * BATCH);

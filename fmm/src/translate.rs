@@ -1,7 +1,8 @@
-//! Plane waves of boxes, handed to their colleagues.
+//! Translations: plane waves of boxes, handed to their colleagues.
 //!
-//! With waves $k = 2\pi j/3$ in units of the box, a shift by one box turns cosine and sine of an axis by a
-//! third of a circle or not at all, and the sum over the 27 colleagues is three sums over three along the axes.
+//! With waves $k = 2\pi j/3$ in units of the box, a shift by one box along an axis rotates the
+//! cosine and sine of that axis by a third of a circle or not at all. So the sum over the 27
+//! colleagues becomes three sums over three boxes, one along each axis.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -23,15 +24,17 @@ const BLOCK: usize = CLASSES * CHUNK;
 pub(crate) struct Slab {
     /// Boxes with sources, as numbers of the level.
     pub sources: Vec<u32>,
-    /// Boxes with targets that can be served once this slab has been swept: those of its layers but the last, and of the last
-    /// layer of the slab before.
+    /// Boxes with targets whose sums are complete once this slab has been swept: those of its
+    /// layers except the last, and of the last layer of the slab before.
     pub targets: Vec<u32>,
-    /// For each receiver along x: its lower neighbour, itself, its upper neighbour among the sources. One past the last stands for
-    /// none, here and below.
+    /// For each receiver along x the numbers of its lower neighbour, itself and its upper neighbour
+    /// among the sources. Here and below, a number one past the last means that there is no such
+    /// box.
     x: Vec<Links>,
     /// For each receiver along y, the receivers along x.
     y: Vec<Links>,
-    /// For each target, the receivers along y: counted in this slab and, behind its none, in the two before.
+    /// For each target the receivers along y: counted in this slab and, after its number for no
+    /// box, in the two slabs before.
     z: Vec<Links>,
 }
 
@@ -57,7 +60,8 @@ fn around(places: impl IntoIterator<Item = Place>, axis: usize) -> BTreeSet<Plac
 const WORTHWHILE: usize = 64;
 
 impl Slab {
-    /// Slabs, from the lowest to the highest, between boxes with sources and boxes with targets at these places.
+    /// Slabs, from the lowest to the highest, of the boxes with sources and the boxes with targets
+    /// at these places.
     pub fn cut(sources: &[(u32, Place)], targets: &[(u32, Place)]) -> Vec<Self> {
         let wanted_y = around(targets.iter().map(|&(_, place)| place), 2);
         let wanted_x = around(wanted_y.iter().copied(), 1);
@@ -125,7 +129,8 @@ fn ends(sources: &[(u32, Place)], targets: &[(u32, Place)]) -> Vec<i64> {
     ends
 }
 
-/// The neighbours of each receiver along an axis, among several lists of givers each followed by a none.
+/// The neighbours of each receiver along an axis, in several lists of givers. Each list is followed
+/// by one number that means no box.
 fn links(givers: &[&[Place]], receivers: &[Place], axis: usize) -> Vec<Links> {
     let mut numbers: HashMap<Place, u32> = HashMap::new();
     let mut first = 0;
@@ -175,10 +180,11 @@ impl Turns {
         self.waves.div_ceil(CHUNK)
     }
 
-    /// Takes one of the `fields` fields of a slab's sources over x and y.
+    /// Sums one of the `fields` fields of a slab's sources over x and y.
     ///
-    /// `waves` has all fields of each batch, `[class of x][class of y][wave][class of z][8]`; the result is `[chunk]`
-    /// `[receiver along y][class][CHUNK]` with a none of zeros behind the receivers.
+    /// `waves` has all fields of each batch, `[class of x][class of y][wave][class of z][8]`. The
+    /// result is `[chunk]` `[receiver along y][class][CHUNK]`, with zeros after the receivers for
+    /// boxes that do not exist.
     pub fn sweep(
         &self,
         slab: &Slab,
@@ -225,7 +231,8 @@ impl Turns {
         );
     }
 
-    /// Sums one field of a slab and of those before it, swept, over z: the waves of its targets, `[chunk][batch of targets]`
+    /// Sums one field of a slab and of the slabs before it, after their sweeps, over z. The result
+    /// is the waves of its targets, `[chunk][batch of targets]`
     /// `[class of x][class of y][CHUNK][class of z][8]`, to be read by [`Self::batch`].
     pub fn gather(&self, slab: &Slab, swept: &[Vec<f64>], out: &mut Vec<f64>) {
         if slab.targets.is_empty() {
@@ -371,7 +378,8 @@ impl WithIsa for Sweep<'_> {
 mod tests {
     use super::*;
 
-    /// Waves of a field `[class of x][class of y][wave][class of z]` of a box, moved by one place along an axis.
+    /// The waves of a field of a box, `[class of x][class of y][wave][class of z]`, moved by one
+    /// place along an axis.
     fn moved(field: &[f64], ball: &Ball, step: Place) -> Vec<f64> {
         let mut field = field.to_vec();
         let at = |wave: usize, class: [usize; 3]| {

@@ -1,23 +1,25 @@
-//! The adaptive tree: boxes that carry grids, level by level, and the leaf cells that hang off them.
+//! The adaptive tree: boxes that carry grids, level by level, and the leaf cells that hang off
+//! them.
 
+mod boxes;
+mod costs;
 mod near;
+mod points;
 mod refine;
 mod root;
 mod sorting;
 #[cfg(test)]
 mod tests;
 
-use std::ops::Range;
-
 use rayon::prelude::*;
 use refine::Cells;
 use root::Root;
 use sorting::Keys;
 
-/// No such box.
-const NONE: u32 = u32::MAX;
-/// Colleagues a box can have, itself included.
-const COLLEAGUES: usize = 27;
+pub(crate) use boxes::{GriddedBox, Leaf, Level, Near};
+pub(crate) use costs::Costs;
+pub(crate) use points::SortedPoints;
+
 /// Points that are enough to choose the side of the root by,
 const SAMPLE: usize = 1 << 15;
 /// of no more than one of so many.
@@ -25,33 +27,14 @@ const SAMPLE_STRIDE: usize = 4;
 /// Targets whose sources within reach are counted to estimate the cost of a tree.
 const COUNTED: usize = 512;
 
-/// What the pieces of a sum take, in nanoseconds on one thread.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Costs {
-    /// One pair of points within the reach of its residual.
-    pub pair: f64,
-    /// One gridded box: its transforms, its transfers from and to its parent, its translations.
-    pub grid: f64,
-    /// One point spread onto a grid and interpolated from it.
-    pub point: f64,
-}
-
-/// Points in the tree's order: every box and every leaf holds a contiguous range of them.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct SortedPoints {
-    /// `order[i]` is the number, in the user's order, of the point that stands at `i` in the tree's.
-    pub order: Vec<u32>,
-    /// Coordinates, in the tree's order.
-    pub positions: [Vec<f64>; 3],
-}
-
 /// Boxes with grids, and leaves, over sources and targets.
 ///
-/// Level $\ell$ has boxes of side $L_\ell = L_0 / 2^\ell$. A box carries a grid ("is gridded") if the root or if
-/// its parent is and refining pays. The difference kernel of level $\ell$ acts between all gridded colleagues
-/// (boxes of one level that share a corner, and the box itself). Those children of a gridded box of level $\ell$
-/// that are not gridded themselves are leaves, of side $L_{\ell+1}$. Two points in leaves of sides $L$ and $L'$
-/// interact directly by the residual of length $\max(L, L')$.
+/// Level $\ell$ has boxes of side $L_\ell = L_0 / 2^\ell$. A box carries a grid ("is gridded") if
+/// it is the root, or if its parent is gridded and refining pays. The difference kernel of level
+/// $\ell$ acts between all gridded colleagues (boxes of one level that share a corner, and the box
+/// itself). Those children of a gridded box of level $\ell$ that are not gridded are leaves, of
+/// side $L_{\ell+1}$. Two points in leaves of sides $L$ and $L'$ interact directly by the residual
+/// of length $\max(L, L')$.
 #[derive(Clone, Debug)]
 pub(crate) struct Tree {
     pub sources: SortedPoints,
@@ -62,54 +45,13 @@ pub(crate) struct Tree {
     pub leaves: Vec<Leaf>,
 }
 
-#[derive(Clone, Debug)]
-pub(crate) struct Level {
-    /// Side of its boxes.
-    pub side: f64,
-    /// In Morton order of their places.
-    pub boxes: Vec<GriddedBox>,
-}
-
-#[derive(Clone, Debug)]
-pub(crate) struct GriddedBox {
-    /// Exact, as are differences of centres: a point lies within half a side of it, up to rounding of the point's.
-    pub center: [f64; 3],
-    /// Place among the boxes of the level, in box sides from the corner of the root.
-    pub place: [i64; 3],
-    /// Index of the parent in the level above (0 for the root).
-    pub parent: u32,
-    /// Which child of its parent: bit `axis` is set on the upper side of that axis.
-    pub octant: u8,
-    /// All points inside, those of gridded children too.
-    pub sources: Range<u32>,
-    pub targets: Range<u32>,
-    /// Its children with grids, as indices of the level below.
-    pub children: Range<u32>,
-    /// Its children without grids, as indices of `Tree::leaves`.
-    pub leaves: Range<u32>,
-}
-
-#[derive(Clone, Debug)]
-pub(crate) struct Leaf {
-    pub sources: Range<u32>,
-    pub targets: Range<u32>,
-    /// What its targets see directly, the leaf itself included, in the order of the sources.
-    pub near: Vec<Near>,
-}
-
-/// Sources within the reach of a residual.
-#[derive(Clone, Debug)]
-pub(crate) struct Near {
-    pub sources: Range<u32>,
-    /// Length of the residual.
-    pub reach: f64,
-}
-
 impl Tree {
-    /// The tree over finite points, refined where `costs` say it pays. Targets are the sources if there are none.
+    /// The tree over finite points, refined where that pays according to `costs`. Without
+    /// `targets`, the targets are the sources.
     ///
-    /// The root is up to twice as large as the points need, so that leaves come in more sizes than powers of two:
-    /// each of a few sides is tried on a sample of the points, and the one with the cheapest tree is taken.
+    /// The root may be up to twice as large as the points need, so that the sides of leaves are not
+    /// limited to powers of two times the extent. A few sides are tried on a sample of the points,
+    /// and the side with the cheapest tree is taken.
     pub fn new(sources: &[[f64; 3]], targets: Option<&[[f64; 3]]>, costs: &Costs) -> Tree {
         let roots = Root::candidates(sources, targets);
         let points = sources.len() + targets.map_or(0, <[_]>::len);
@@ -149,15 +91,14 @@ impl Tree {
             targets: target_keys.as_deref(),
         };
         let cells = Cells::new(&keys, root.finest, costs);
-        let (levels, leaves) = cells.boxes_and_leaves(root);
-        let mut tree = Tree {
+        let (levels, mut leaves) = cells.boxes_and_leaves(root);
+        near::fill(&mut leaves, &cells, root, &sources, targets.as_ref());
+        Tree {
             sources,
             targets,
             levels,
             leaves,
-        };
-        near::fill(&mut tree, &cells);
-        tree
+        }
     }
 
     /// Coordinates of the targets, be they the sources or not.
@@ -209,16 +150,5 @@ impl Tree {
             .map(|level| level.boxes.len())
             .sum::<usize>();
         self.pairs() * costs.pair + boxes as f64 * costs.grid + 0.5 * points as f64 * costs.point
-    }
-}
-
-impl Costs {
-    /// Those of a sample, one of `stride` points, for which every point stands.
-    fn thinned(&self, stride: f64) -> Costs {
-        Costs {
-            pair: self.pair * stride * stride,
-            grid: self.grid,
-            point: self.point * stride,
-        }
     }
 }

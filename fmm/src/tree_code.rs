@@ -1,8 +1,12 @@
-//! The Barnes-Hut tree code: what is far from a leaf is seen through proxies, what is near directly.
+//! The Barnes-Hut tree code: sources far from a leaf are replaced by proxies, and near ones are
+//! summed directly.
 //!
-//! A cluster of sources in a box is replaced by strengths on the $p^3$ Chebyshev nodes of the box, such that polynomials of degree below $p$ along
-//! each axis are summed alike: $\sum_j s_j\,G(x - y_j) \approx \sum_k \hat s_k\,G(x - \eta_k)$ with $\hat s_k = \sum_j \ell_k(y_j) s_j$, for every smooth
-//! $G$ (L. Wang, R. Krasny, S. Tlupova, A kernel-independent treecode based on barycentric Lagrange interpolation, Commun. Comput. Phys. 28, 2020).
+//! A cluster of sources in a box is replaced by strengths on the $p^3$ Chebyshev nodes of the box.
+//! Their sum is the same for polynomials of degree below $p$ along each axis:
+//! $\sum_j s_j\,G(x - y_j) \approx \sum_k \hat s_k\,G(x - \eta_k)$ with
+//! $\hat s_k = \sum_j \ell_k(y_j) s_j$, for every smooth $G$ (L. Wang, R. Krasny, S. Tlupova, A
+//! kernel-independent treecode based on barycentric Lagrange interpolation, Commun. Comput. Phys.
+//! 28, 2020).
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -18,10 +22,11 @@ use crate::tree::{Costs, SortedPoints, Tree};
 #[cfg(test)]
 mod tests;
 
-/// Sums by the Barnes-Hut tree code, for comparison: their time grows like $N \log N$.
+/// Sums by the Barnes-Hut tree code, for comparison. Their time grows like $N \log N$.
 ///
-/// It takes the strengths of [`StokesSum`](crate::StokesSum) and has no operators to make, but is slower in all but small sums to few digits.
-/// Results are the same bits on any number of threads.
+/// It takes the same strengths as [`StokesSum`](crate::StokesSum) and has no operators to make, but
+/// it is slower except for small sums to few digits. Results are the same bits on any number of
+/// threads.
 ///
 /// # Examples
 ///
@@ -32,7 +37,8 @@ mod tests;
 /// let targets = [[2.0, 0.0, 0.0]];
 /// let points = Points::apart(&sources, &targets);
 /// let sum = TreeCode::new(points, Singularities::Stokeslets, Output::Velocity, 1e-6)?;
-/// let flow = sum.apply(&Strengths { stokeslets: Some(&[[1.0, 0.0, 0.0]]), ..Default::default() })?;
+/// let strengths = Strengths { stokeslets: Some(&[[1.0, 0.0, 0.0]]), ..Default::default() };
+/// let flow = sum.apply(&strengths)?;
 /// assert!((flow.velocity[0][0] * 8.0 * std::f64::consts::PI - 1.0).abs() < 1e-6);
 /// # Ok::<(), stokes_fmm::FmmError>(())
 /// ```
@@ -60,8 +66,8 @@ struct Opening {
 }
 
 impl Opening {
-    /// For a relative error of `tolerance`, as measured for random strengths: every proxy along an axis is worth a digit, and large sums cost
-    /// one more than small ones.
+    /// Parameters for a relative error of `tolerance`, as measured for random strengths. Every
+    /// proxy along an axis adds a digit, and large sums need one proxy more than small ones.
     fn for_tolerance(tolerance: f64, singularities: Singularities, output: Output) -> Self {
         let derivatives = usize::from(singularities != Singularities::Stokeslets)
             + usize::from(output != Output::Velocity);
@@ -134,7 +140,8 @@ struct View {
 }
 
 impl TreeCode {
-    /// Plans sums of `singularities` to about the `tolerance`, relative in the Euclidean norm over all targets.
+    /// Plans sums of `singularities` to about the `tolerance`, relative in the Euclidean norm over
+    /// all targets.
     ///
     /// # Errors
     ///
@@ -198,7 +205,8 @@ impl TreeCode {
     ///
     /// # Errors
     ///
-    /// Strengths that are not finite, of another number than there are sources, or of a kind that was not planned for.
+    /// Strengths that are not finite, whose number differs from that of the sources, or of a kind
+    /// that was not planned for.
     pub fn apply(&self, strengths: &Strengths<'_>) -> Result<Flow, FmmError> {
         strengths.validate(self.sources.order.len())?;
         self.singularities.admits(strengths)?;
@@ -360,7 +368,8 @@ impl TreeCode {
     }
 }
 
-/// Clusters of the leaves, then of the boxes level by level from the finest; and where each of these generations ends.
+/// Clusters of the leaves, then of the boxes level by level from the finest; and the end of each of
+/// these generations.
 fn clusters(tree: &Tree) -> (Vec<Cluster>, Vec<usize>) {
     let cluster = |sources: &Range<u32>, children| Cluster {
         bounds: Bounds::around(&tree.sources, sources),
@@ -388,7 +397,8 @@ fn clusters(tree: &Tree) -> (Vec<Cluster>, Vec<usize>) {
     (clusters, generations)
 }
 
-/// A stresslet of density $q$ and normal $n$ is $q \otimes n$; a sum of such is three, with the axes as normals.
+/// Number of records per proxy. A stresslet of density $q$ and normal $n$ is $q \otimes n$; a sum
+/// of these is three stresslets with the axes as normals.
 fn records_per_proxy(singularities: Singularities) -> usize {
     if singularities == Singularities::Stokeslets {
         1

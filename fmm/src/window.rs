@@ -1,4 +1,5 @@
-//! The window that spreads points over a grid, and the one-axis matrices from grids to waves and to parents.
+//! The window that spreads points over a grid, and the one-axis matrices from grids to waves and to
+//! the grids of parents.
 
 use std::f64::consts::PI;
 
@@ -8,10 +9,12 @@ use faer::Mat;
 use crate::polynomial::{self, Sample};
 use crate::prolate::Prolate;
 
-/// The window of a grid: $\varphi(z) = \psi_0^{c_w}(2z/w)$ at a distance of $z$ grid spacings, 0 beyond $w/2$.
+/// The window of a grid: $\varphi(z) = \psi_0^{c_w}(2z/w)$ at a distance of $z$ grid spacings, 0
+/// beyond $w/2$.
 ///
-/// All lengths are in sides of the box and positions are measured from its centre: the grid has its $g$ points per axis at
-/// $(i - \frac{g-1}2)h$, $h = 1/(g - w + 1)$, so that the $w$ points nearest to any place in the box exist.
+/// All lengths are in sides of the box, and positions are measured from its centre. The grid has
+/// its $g$ points per axis at $(i - \frac{g-1}2)h$, $h = 1/(g - w + 1)$, so that the $w$ points
+/// nearest to any place in the box exist.
 #[derive(Clone, Debug)]
 pub(crate) struct Window {
     psi: Prolate,
@@ -22,18 +25,21 @@ pub(crate) struct Window {
     values: PiecewisePolynomial,
 }
 
-/// The $w$ values of the window on the grid as polynomials in $s \in [-1, 1]$, $s = 2f - 1$ with $f$ the distance, in grid spacings, from the
-/// lower end of the window to the first grid point in it. As the point moves up by a grid spacing, $s$ falls by 2.
+/// The $w$ values of the window on the grid as polynomials in $s \in [-1, 1]$. Here $s = 2f - 1$
+/// with $f$ the distance, in grid spacings, from the lower end of the window to the first grid
+/// point in it. As the point moves up by a grid spacing, $s$ falls by 2.
 #[derive(Clone, Debug)]
 pub(crate) struct PiecewisePolynomial {
     /// $w$ padded to whole registers.
     pub stride: usize,
-    /// Power by power, the highest first: the coefficients of all grid points, padded by zeros to `stride`.
+    /// The coefficients of all grid points, power by power, the highest first. Each power is padded
+    /// with zeros to `stride`.
     pub coefficients: Vec<f64>,
 }
 
 impl Window {
-    /// The window over `width` $= w$ grid points for grids of `points` $= g$ per axis (even, $g > w$) and $J$ = `waves`.
+    /// The window over `width` $= w$ grid points, for grids of `points` $= g$ per axis (even,
+    /// $g > w$) and $J$ = `waves`.
     pub fn new(width: usize, points: usize, waves: usize) -> Self {
         let cutoff = 2.0 * PI * waves as f64 / 3.0;
         let intervals = (points - width + 1) as f64;
@@ -69,8 +75,8 @@ impl Window {
         &self.values
     }
 
-    /// $\hat\varphi(k) = \int \varphi(z)\,e^{-ikhz}\,dz$, for $|k| \le K$ in box units: $w C_0\,\psi(khw/2c_w)$, since $\psi$ is its own
-    /// transform.
+    /// Transform $\hat\varphi(k) = \int \varphi(z)\,e^{-ikhz}\,dz$ for $|k| \le K$ in box units. It
+    /// is $w C_0\,\psi(khw/2c_w)$, since $\psi$ is its own transform.
     pub fn fourier(&self, k: f64) -> f64 {
         let width = self.width as f64;
         let x = 0.5 * k * self.spacing() * width / self.psi.bandwidth();
@@ -97,19 +103,22 @@ impl Window {
         }
     }
 
-    /// How many points of the parent's grid a child reaches along each axis: those that its own points, in half of the parent,
-    /// would be spread over.
+    /// Number of points of the parent's grid that a child reaches along each axis: those over which
+    /// its own points, in half of the parent, would be spread.
     pub fn reach(&self) -> usize {
         (self.points + self.width).div_ceil(2)
     }
 
-    /// The one-axis matrix that takes the grid of the lower child to the lowest [`reach`](Self::reach) points of its parent's:
-    /// row-major, parent by child.
+    /// The one-axis matrix that takes the grid of the lower child to the lowest
+    /// [`reach`](Self::reach) points of its parent's grid: row-major, parent by child.
     ///
-    /// The parent's grid is the one whose waves come closest, over $|k| \le K$ and in the sense of least squares, to
-    /// $$ \sum_G R_{Gg}\,\frac{e^{-ikX_G}}{\hat\varphi(k)} = \frac{e^{-ikx_g}}{\hat\varphi(k/2)}, $$
-    /// with $X_G$ the parent's grid and $x_g$ the child's, both in sides of the parent. Grids that hardly make waves are left out. The upper
-    /// child's matrix is the mirror image, $R_{g-1-G,\,g-1-g'}$.
+    /// The parent's grid is the one whose waves come closest, over $|k| \le K$ and in the sense of
+    /// least squares, to those of the child:
+    /// $$ \sum_G R_{Gg}\,\frac{e^{-ikX_G}}{\hat\varphi(k)}
+    ///    = \frac{e^{-ikx_g}}{\hat\varphi(k/2)}, $$
+    /// with $X_G$ the parent's grid and $x_g$ the child's, both in sides of the parent. Grids that
+    /// hardly make waves are left out. The upper child's matrix is the mirror image,
+    /// $R_{g-1-G,\,g-1-g'}$.
     pub fn transfer(&self) -> Vec<f64> {
         const SAMPLES: usize = 200;
         const NEGLIGIBLE: f64 = 1e-11;
@@ -133,7 +142,8 @@ impl Window {
             .collect()
     }
 
-    /// $e^{-ikx}/\hat\varphi$ of the lowest `points` of the grid of a box of some side about some centre: cosines above, sines below.
+    /// Values of $e^{-ikx}/\hat\varphi$ on the lowest `points` of the grid of a box of some side
+    /// about some centre: cosines above, sines below.
     fn phases(&self, waves: &[f64], side: f64, center: f64, points: usize) -> Mat<f64> {
         let count = waves.len();
         Mat::from_fn(2 * count, points, |row, i| {
@@ -154,9 +164,10 @@ impl Window {
     }
 }
 
-/// $\hat q(k) = \frac1{\hat\varphi(k)}\sum_i G_i\,e^{-ikx_i}$ for one axis, folded about the centre: with the upper half
-/// $x_i = (i + \frac12)h$, $0 \le i < g/2$, the real part takes the even part of the grid, $G(x_i) + G(-x_i)$, through `even` and the
-/// imaginary part takes the odd part, $G(x_i) - G(-x_i)$, through $-$`odd`. Waves come back to grids by the transposes.
+/// The one-axis matrices of $\hat q(k) = \frac1{\hat\varphi(k)}\sum_i G_i\,e^{-ikx_i}$, folded
+/// about the centre. With the upper half $x_i = (i + \frac12)h$, $0 \le i < g/2$, `even` takes the
+/// even part of the grid, $G(x_i) + G(-x_i)$, to the real part, and $-$`odd` takes the odd part,
+/// $G(x_i) - G(-x_i)$, to the imaginary part. The transposes take waves back to grids.
 #[derive(Clone, Debug)]
 pub(crate) struct WavesMatrix {
     /// $\cos(k_jx_i)/\hat\varphi(k_j)$, waves by half the grid, row-major.

@@ -78,7 +78,8 @@ fn planned(points: Points<'_>, kinds: Singularities, output: Output, tolerance: 
     any.moved(points).expect("valid points")
 }
 
-/// Errors of velocity, pressure and gradient at some of the targets, which are the sources if there are none.
+/// Errors of velocity, pressure and gradient at some of the targets. Without targets, these are the
+/// sources.
 fn stokes(
     cloud: &Cloud,
     targets: Option<&[[f64; 3]]>,
@@ -268,8 +269,9 @@ fn targets_far_away() {
         let kinds = Singularities::Stokeslets;
         let [velocity, pressure, gradient] =
             stokes(&cloud, Some(&far), kinds, Output::Gradient, tolerance);
-        // Far from all sources pressures and gradients are small next to velocities over the shortest wave: as documented, a factor
-        // of up to 5 is lost in the one, of up to 20 in the other.
+        // Far from all sources pressures and gradients are small compared with velocities over the
+        // shortest wave. As documented, accuracy is lost: up to a factor of 5 in pressures, up to
+        // 20 in gradients.
         let errors = [velocity, pressure / 5.0, gradient / 20.0];
         misses.check("far targets", tolerance, &errors);
     }

@@ -1,4 +1,5 @@
-//! What flows must satisfy whatever the method, and that sums are the same bits however they are made.
+//! Identities that flows satisfy whatever the method, and tests that sums are the same bits however
+//! they are made.
 
 mod common;
 
@@ -52,7 +53,8 @@ fn power(forces: &[[f64; 3]], velocities: &[[f64; 3]]) -> f64 {
         .sum()
 }
 
-/// Points and weights on the sphere of radius 2 around the origin, where the flow of sources within the unit cube is resolved.
+/// Points and weights on the sphere of radius 2 around the origin, which resolve there the flow of
+/// sources within the unit cube.
 fn sphere() -> (Vec<[f64; 3]>, Vec<f64>) {
     const RADIUS: f64 = 2.0;
     let rings = GaussLegendre::new(100).expect("an order it has");
@@ -69,7 +71,8 @@ fn sphere() -> (Vec<[f64; 3]>, Vec<f64>) {
     (points, weights)
 }
 
-/// $\int \sigma n\,dS = -\sum f$, $\int x \times \sigma n\,dS = -\sum (x \times f + t)$, $\int u \cdot n\,dS = \sum (s - q \cdot n)$.
+/// $\int \sigma n\,dS = -\sum f$, $\int x \times \sigma n\,dS = -\sum (x \times f + t)$,
+/// $\int u \cdot n\,dS = \sum (s - q \cdot n)$.
 #[test]
 fn what_flows_through_a_sphere_is_what_is_inside() {
     let (cloud, amounts) = centred(1);
@@ -224,7 +227,8 @@ fn sums_are_linear() {
     }
 }
 
-/// $\sum f \cdot u[g] = \sum g \cdot u[f]$ for Stokeslets, by the reciprocal theorem; the sum is symmetric to rounding.
+/// $\sum f \cdot u[g] = \sum g \cdot u[f]$ for Stokeslets, by the reciprocal theorem. The sum is
+/// symmetric to rounding.
 #[test]
 fn stokeslets_are_reciprocal() {
     let (cloud, first) = centred(7);
@@ -243,7 +247,8 @@ fn stokeslets_are_reciprocal() {
     assert!((there - back).abs() < 1e-14 * size);
 }
 
-/// $\sigma = -p I + \nabla u + \nabla u^T$ is divergence-free, by differences of the stress; $\nabla u$ is that of $u$.
+/// $\sigma = -p I + \nabla u + \nabla u^T$ is divergence-free, by differences of the stress, and
+/// $\nabla u$ is the gradient of $u$.
 #[test]
 fn gradients_and_stresses_are_those_of_the_velocity() {
     const STEP: f64 = 0.01;

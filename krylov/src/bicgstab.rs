@@ -1,4 +1,5 @@
-//! BiCGStab, begun anew from the true residual when its recurrences break down or are no longer to be believed.
+//! BiCGStab. It starts again from the true residual when its recurrences break down or when their
+//! residual can no longer be trusted.
 
 use super::gmres::STALLED;
 use super::session::Session;

@@ -5,12 +5,14 @@ use super::error::KrylovError;
 /// How to iterate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// The least residual in the Krylov space (Y. Saad and M. H. Schultz, 1986), one product per iteration; up to `restart + 1` vectors are kept.
+    /// GMRES (Y. Saad and M. H. Schultz, 1986): the iterate of least residual in the Krylov space.
+    /// It makes one product per iteration and keeps up to `restart + 1` vectors.
     Gmres {
         /// After how many iterations the basis is thrown away; at least 1.
         restart: usize,
     },
-    /// Stabilised biconjugate gradients (H. A. van der Vorst, 1992): two products per iteration, eight vectors in all.
+    /// BiCGStab, stabilised biconjugate gradients (H. A. van der Vorst, 1992): two products per
+    /// iteration, eight vectors in all.
     BiCgStab,
 }
 
@@ -23,7 +25,8 @@ pub struct Control {
     pub max_iterations: usize,
     /// Share of the tolerance that one product's error may take; between 0 and 1.
     pub safety: f64,
-    /// Largest tolerance asked of a product; 0 has all products at full tolerance, which is `safety` times `tolerance`.
+    /// Largest tolerance that is asked of a product. With 0 all products are made at full
+    /// tolerance, which is `safety` times `tolerance`.
     pub loosest: f64,
 }
 

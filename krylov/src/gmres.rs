@@ -9,9 +9,11 @@ use super::{KrylovError, Operator, Outcome, Stop};
 /// A cycle that leaves more than this of the residual has stagnated.
 pub(super) const STALLED: f64 = 0.999;
 
-/// The least-squares problem of one cycle, triangular by rotations; its columns come one after the other.
+/// The least-squares problem of one cycle. Rotations make it triangular, and it grows by one column
+/// per iteration.
 struct LeastSquares {
-    /// Columns of the triangle, each of `restart + 1` entries, one below the diagonal while it is being made.
+    /// Columns of the triangle, each of `restart + 1` entries. The newest has an entry below the
+    /// diagonal until it is rotated.
     columns: Vec<f64>,
     stride: usize,
     rotations: Vec<(f64, f64)>,
@@ -71,8 +73,9 @@ impl LeastSquares {
 
     /// The coefficients of the least residual.
     ///
-    /// In the invariant space of a singular operator the last directions lead nowhere, with coefficients so large that their
-    /// rounding is more than they gain: they are left out.
+    /// In the invariant space of a singular operator the last directions do not lower the residual,
+    /// but have coefficients so large that their rounding errors exceed the gain. These directions
+    /// are left out.
     fn solve(&mut self) -> &[f64] {
         let stride = self.stride;
         let mut steps = self.rotations.len();
@@ -101,7 +104,8 @@ impl LeastSquares {
     }
 }
 
-/// Makes `w` orthogonal to the basis; writes the coefficients and, last, the norm of what is left. False if nothing is left but rounding.
+/// Makes `w` orthogonal to the basis and writes to `column` the coefficients and, last, the norm of
+/// the remainder. Returns false if the remainder is rounding error only.
 fn orthogonalize<O: Operator>(
     session: &mut Session<'_, O>,
     basis: &[Vec<f64>],

@@ -5,9 +5,10 @@ pub trait Operator {
     /// Why a product cannot be made.
     type Error;
 
-    /// Writes the product with `x` to `y`, with an error of at most `tolerance` times the Euclidean norm of `x`.
+    /// Writes the product with `x` to `y`, with an error of at most `tolerance` times the Euclidean
+    /// norm of `x`.
     ///
-    /// What is in `y` before has no meaning.
+    /// What `y` contains before the call has no meaning.
     ///
     /// # Errors
     /// Its own; they end the iteration.

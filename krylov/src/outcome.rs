@@ -9,7 +9,8 @@ pub enum Stop {
     Converged,
     /// As many iterations as were allowed have been made.
     MaxIterations,
-    /// The true residual no longer falls: the system is singular, or the tolerance is below what the products' rounding allows.
+    /// The true residual no longer falls: the system is singular, or the tolerance is below what
+    /// the rounding of the products allows.
     Stagnated,
     /// A coefficient of BiCGStab's recurrences is a quotient of zeros, also after a new start.
     Breakdown,
@@ -30,18 +31,21 @@ impl fmt::Display for Stop {
 #[derive(Clone, Debug, PartialEq)]
 #[must_use]
 pub struct Outcome {
-    /// The solution of the system with the operator as given, that is before `M^{-1}` if the operator is $A M^{-1}$; the one of least true residual seen.
+    /// The iterate of least true residual. It solves the system with the operator as given: if the
+    /// operator is $A M^{-1}$, it is $M x$, and $M^{-1}$ is still to be applied.
     pub solution: Vec<f64>,
     /// Iterations made.
     pub iterations: usize,
     /// Products made, those for true residuals among them.
     pub products: usize,
-    /// Norm of the solution's residual, by a product at full tolerance, over that of the right-hand side.
+    /// Norm of the residual of the solution, computed with a product at full tolerance, relative to
+    /// that of the right-hand side.
     pub residual: f64,
     /// That residual itself.
     pub residual_vector: Vec<f64>,
     /// Why the iteration ended.
     pub stop: Stop,
-    /// The residual that the iteration believed in, before it began and after each iteration, over the norm of the right-hand side.
+    /// Norm of the residual as the recurrences give it, relative to that of the right-hand side:
+    /// before the first iteration and after each one.
     pub history: Vec<f64>,
 }

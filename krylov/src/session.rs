@@ -3,7 +3,8 @@
 use super::vectors::{Sums, not_finite, scale};
 use super::{Control, KrylovError, Operator, Outcome, Stop};
 
-/// A system being solved. Vectors are those of the user times [`Session::scale`], a power of two that keeps squares from under- and overflow.
+/// A system being solved. Vectors are those of the user times [`Session::scale`], a power of two
+/// that keeps squares from underflow and overflow.
 pub(super) struct Session<'a, O: Operator> {
     operator: &'a mut O,
     right_hand_side: &'a [f64],
@@ -12,7 +13,8 @@ pub(super) struct Session<'a, O: Operator> {
     scale: f64,
     /// Norm of the scaled right-hand side.
     unit: f64,
-    /// Share of the tolerance that a product's error may take, lowered when the believed residual was far from the true one.
+    /// Share of the tolerance that a product's error may take. It is lowered when the recurrences'
+    /// residual was far from the true one.
     safety: f64,
     /// Whether all products are made at full tolerance from now on.
     exact: bool,
@@ -80,7 +82,8 @@ impl<'a, O: Operator> Session<'a, O> {
         residual <= self.control.tolerance
     }
 
-    /// Norm that a believed residual must reach: with the products' errors it is still within the tolerance.
+    /// Norm that the recurrences' residual must reach so that the true residual, with the errors of
+    /// the products, is still within the tolerance.
     pub(super) fn target(&self) -> f64 {
         self.control.tolerance * (1.0 - self.control.safety) * self.unit
     }
@@ -90,7 +93,7 @@ impl<'a, O: Operator> Session<'a, O> {
         self.unit
     }
 
-    /// The product of the operator with `x`, as exact as it need be when the residual has this norm.
+    /// The product of the operator with `x`, only as exact as a residual of this norm needs.
     pub(super) fn product(
         &mut self,
         x: &[f64],

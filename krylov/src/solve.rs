@@ -7,14 +7,19 @@ use super::outcome::{Outcome, Stop};
 use super::session::Session;
 use super::{bicgstab, gmres, vectors};
 
-/// Solves a linear system, from zero or from `start`; `report` is called with each iteration's number, from 1, and the residual it believes in,
-/// relative to the right-hand side. An error of `report` ends the iteration.
+/// Solves a linear system, starting from zero or from `start`.
 ///
-/// The tolerance is relative to the right-hand side for any start, so a good one saves iterations. Whether the system was solved
-/// is told by [`Outcome::stop`], never by an error.
+/// After each iteration `report` is called with the number of the iteration, from 1, and the
+/// residual that the recurrences give, relative to the right-hand side. An error of `report` ends
+/// the iteration.
+///
+/// The tolerance is relative to the right-hand side whatever the start, so a good start saves
+/// iterations. [`Outcome::stop`] tells whether the system was solved; this is never reported as an
+/// error.
 ///
 /// # Errors
-/// Errors of the operator and of the report; vectors that are not finite or differ in length; settings out of range.
+/// Errors of the operator and of the report; vectors that are not finite or differ in length;
+/// settings out of range.
 pub fn solve<O: Operator>(
     operator: &mut O,
     right_hand_side: &[f64],

@@ -2,10 +2,10 @@
 
 use pulp::{Arch, Scalar, Simd, WithSimd};
 
-use crate::Lanes;
+use crate::register::Lanes;
 
-/// How many digits of a reciprocal square root are wanted: as many as this many terms of a series about the seed of
-/// AVX-512 give. Instruction sets without a seed give all of them.
+/// How many digits of a reciprocal square root are wanted. The value is the number of terms of a
+/// series about the seed of AVX-512. Instruction sets without a seed give all digits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Precision {
     /// Relative error below 1e-4: the seed as it is.
@@ -23,11 +23,27 @@ pub trait Isa: Simd {
     /// Whether roots have a seed. All precisions are the same without.
     const SEEDED: bool;
 
-    /// $1/\sqrt x$ to `TERMS` terms (see [`Precision`]) where $x$ exceeds `least` $\ge 0$; 0 elsewhere.
+    /// $1/\sqrt x$ to `TERMS` terms (see [`Precision`]) where $x$ exceeds `least` $\ge 0$; 0
+    /// elsewhere.
     fn rsqrt_above<const TERMS: usize>(self, x: Lanes<Self>, least: Lanes<Self>) -> Lanes<Self>;
 
     /// A bit for each lane, the lowest for the first: set where $a < b$.
     fn less_bits(self, a: Lanes<Self>, b: Lanes<Self>) -> usize;
+}
+
+impl<S: Isa> Lanes<S> {
+    /// $1/\sqrt x$ to `TERMS` terms (see [`Precision`]) where $x$ exceeds `least` $\ge 0$; 0
+    /// elsewhere.
+    #[inline(always)]
+    pub fn rsqrt_above<const TERMS: usize>(self, least: Self) -> Self {
+        self.0.rsqrt_above::<TERMS>(self, least)
+    }
+
+    /// A bit for each lane, the lowest for the first: set where `self < bound`.
+    #[inline(always)]
+    pub fn less_bits(self, bound: Self) -> usize {
+        self.0.less_bits(self, bound)
+    }
 }
 
 /// By hardware square root and division: where there is no seed for doubles.

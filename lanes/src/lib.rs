@@ -1,160 +1,20 @@
 //! Arithmetic on one SIMD register of doubles, written like arithmetic on doubles.
 //!
-//! The instruction set is chosen at run time, so the same binary uses AVX-512 where there is one: by
-//! [`pulp::Arch`] where arithmetic and square roots do, by [`dispatch`] where the approximate reciprocal
-//! square root of the [`Isa`] is wanted too. Buffers handed to vectorised code are padded to [`PADDING`]
-//! entries, the widest register.
+//! The instruction set is chosen at run time, so the same binary uses AVX-512 where the machine has
+//! it. [`pulp::Arch`] chooses it for code that needs arithmetic and square roots only, [`dispatch`]
+//! for code that also needs the approximate reciprocal square root of the [`Isa`]. Buffers handed
+//! to vectorised code are padded to [`PADDING`] entries, the widest register.
 //!
-//! Two rules keep the code fast: everything that takes a [`Lanes`] is `#[inline(always)]`, and none of it
-//! is a closure, since a closure that is not inlined is compiled without the instruction set.
-
-use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
-
-use pulp::Simd;
+//! Two rules keep the code fast: everything that takes a [`Lanes`] is `#[inline(always)]`, and none
+//! of it is a closure, since a closure that is not inlined is compiled without the instruction set.
 
 mod isa;
+mod padding;
+mod register;
 
 pub use isa::{Isa, Precision, WithIsa, WithRoots, dispatch, dispatch_roots};
-
-/// Every vectorised buffer has a multiple of this many entries.
-pub const PADDING: usize = 8;
-
-/// `len` rounded up to the padding.
-pub const fn padded(len: usize) -> usize {
-    len.next_multiple_of(PADDING)
-}
-
-/// One register of doubles.
-#[derive(Clone, Copy)]
-pub struct Lanes<S: Simd>(pub S, pub S::f64s);
-
-impl<S: Simd> Lanes<S> {
-    /// How many doubles a register holds.
-    pub const COUNT: usize = size_of::<S::f64s>() / size_of::<f64>();
-
-    /// `x` in every lane.
-    #[inline(always)]
-    pub fn splat(simd: S, x: f64) -> Self {
-        Self(simd, simd.splat_f64s(x))
-    }
-
-    /// Register number `index` of a padded buffer.
-    #[inline(always)]
-    pub fn load(simd: S, buffer: &[f64], index: usize) -> Self {
-        Self(simd, S::as_simd_f64s(buffer).0[index])
-    }
-
-    /// Stores into register number `index` of a padded buffer.
-    #[inline(always)]
-    pub fn store(self, buffer: &mut [f64], index: usize) {
-        S::as_mut_simd_f64s(buffer).0[index] = self.1;
-    }
-
-    /// `self * a + b`, rounded once where the machine can.
-    #[inline(always)]
-    pub fn mul_add(self, a: Self, b: Self) -> Self {
-        Self(self.0, self.0.mul_add_e_f64s(self.1, a.1, b.1))
-    }
-
-    /// Square root.
-    #[inline(always)]
-    pub fn sqrt(self) -> Self {
-        Self(self.0, self.0.sqrt_f64s(self.1))
-    }
-
-    /// The sum of the lanes.
-    #[inline(always)]
-    pub fn sum(self) -> f64 {
-        self.0.reduce_sum_f64s(self.1)
-    }
-
-    /// The smallest lane.
-    #[inline(always)]
-    pub fn min(self) -> f64 {
-        self.0.reduce_min_f64s(self.1)
-    }
-
-    /// The largest lane.
-    #[inline(always)]
-    pub fn max(self) -> f64 {
-        self.0.reduce_max_f64s(self.1)
-    }
-
-    /// The larger of each two lanes.
-    #[inline(always)]
-    pub fn larger(self, other: Self) -> Self {
-        Self(self.0, self.0.max_f64s(self.1, other.1))
-    }
-
-    /// `yes` in the lanes where `self < bound`, `no` elsewhere.
-    #[inline(always)]
-    pub fn select_less(self, bound: Self, yes: Self, no: Self) -> Self {
-        let mask = self.0.less_than_f64s(self.1, bound.1);
-        Self(self.0, self.0.select_f64s(mask, yes.1, no.1))
-    }
-}
-
-impl<S: Isa> Lanes<S> {
-    /// $1/\sqrt x$ to `TERMS` terms (see [`Precision`]) where $x$ exceeds `least` $\ge 0$; 0 elsewhere.
-    #[inline(always)]
-    pub fn rsqrt_above<const TERMS: usize>(self, least: Self) -> Self {
-        self.0.rsqrt_above::<TERMS>(self, least)
-    }
-
-    /// A bit for each lane, the lowest for the first: set where `self < bound`.
-    #[inline(always)]
-    pub fn less_bits(self, bound: Self) -> usize {
-        self.0.less_bits(self, bound)
-    }
-}
-
-macro_rules! operator {
-    ($trait:ident, $method:ident, $simd_method:ident) => {
-        impl<S: Simd> $trait for Lanes<S> {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Self(self.0, self.0.$simd_method(self.1, other.1))
-            }
-        }
-
-        impl<S: Simd> $trait<f64> for Lanes<S> {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: f64) -> Self {
-                self.$method(Self::splat(self.0, other))
-            }
-        }
-
-        impl<S: Simd> $trait<Lanes<S>> for f64 {
-            type Output = Lanes<S>;
-            #[inline(always)]
-            fn $method(self, other: Lanes<S>) -> Lanes<S> {
-                Lanes::splat(other.0, self).$method(other)
-            }
-        }
-    };
-}
-
-operator!(Add, add, add_f64s);
-operator!(Sub, sub, sub_f64s);
-operator!(Mul, mul, mul_f64s);
-operator!(Div, div, div_f64s);
-
-impl<S: Simd> AddAssign for Lanes<S> {
-    #[inline(always)]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
-
-impl<S: Simd> Neg for Lanes<S> {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self(self.0, self.0.neg_f64s(self.1))
-    }
-}
+pub use padding::{PADDING, padded};
+pub use register::Lanes;
 
 #[cfg(test)]
 mod tests;

@@ -1,4 +1,4 @@
-use pulp::Scalar;
+use pulp::{Scalar, Simd};
 
 use super::*;
 

@@ -1,6 +1,10 @@
-//! Makes the data files of the crate anew: `cargo run --release -p panel-quadrature --example generate_tables`.
+//! Writes the data files of the crate anew:
 //!
-//! Takes two to four minutes. Names of files as arguments restrict it to those.
+//! ```text
+//! cargo run --release -p panel-quadrature --example generate_tables
+//! ```
+//!
+//! It takes two to four minutes. If names of files are given as arguments, only those are written.
 
 use std::path::Path;
 

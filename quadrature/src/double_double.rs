@@ -1,9 +1,10 @@
 //! Double-double numbers: unevaluated sums `hi + lo` of two doubles, about 31 digits.
 //!
-//! Only what the rules need: the four operations, square root of a double, and the logarithm.
-//! The error-free sum and product are Knuth's (1969) and the fused multiply-add one; the algorithms for
-//! the operations are those of Joldes, Muller & Popescu (2017). The crate `twofloat` (0.8) was tried:
-//! its `f64 / TwoFloat` and its `ln` keep only 17 to 18 digits.
+//! It has only what the rules need: the four operations, square root of a double, and the
+//! logarithm. The error-free sum is Knuth's (1969), the error-free product uses the fused
+//! multiply-add, and the algorithms for the operations are those of Joldes, Muller & Popescu
+//! (2017). The crate `twofloat` (0.8) was tried: its `f64 / TwoFloat` and its `ln` keep only 17 to
+//! 18 digits.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -89,8 +90,8 @@ impl Dd {
         (sum + Self::ONE).scale(2f64.powi(k as i32))
     }
 
-    /// The natural logarithm of a positive number: Newton's method for `exp`, one step of third order
-    /// from the double value.
+    /// The natural logarithm of a positive number: one step of third order of Newton's method for
+    /// `exp`, from the double value.
     pub(crate) fn ln(self) -> Self {
         let y = Self::from(self.hi.ln());
         // With d = x exp(-y) - 1 of order 1e-16, ln(1 + d) = d - d^2/2 to 48 digits.

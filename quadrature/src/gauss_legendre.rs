@@ -8,10 +8,10 @@ pub const MAX_ORDER: usize = 1000;
 
 /// A Gauss-Legendre rule.
 ///
-/// Nodes are the zeros `x_i` of `P_n`, weights are `2 / ((1 - x_i^2) P'_n(x_i)^2)`
-/// (Abramowitz & Stegun 1964, 25.4.29). Newton's method on the three-term recurrence in doubles from
-/// Tricomi's guess (1950), then one step in double-double, from which both are rounded: every node
-/// and weight is right to an ulp or so, at any order.
+/// Nodes are the zeros `x_i` of `P_n`, weights are `2 / ((1 - x_i^2) P'_n(x_i)^2)` (Abramowitz &
+/// Stegun 1964, 25.4.29). Newton's method in doubles on the three-term recurrence starts from
+/// Tricomi's guess (1950); one step in double-double follows, and nodes and weights are rounded
+/// from its result. Every node and weight is right to about one ulp, at any order.
 ///
 /// ```
 /// let rule = panel_quadrature::GaussLegendre::new(5)?;

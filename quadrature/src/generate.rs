@@ -1,16 +1,19 @@
-//! The generator of the tabulated rules: generalised Gaussian quadrature for logarithmic singularities.
+//! The generator of the tabulated rules: generalised Gaussian quadrature for logarithmic
+//! singularities.
 //!
-//! A rule with `n` nodes `u_j` and weights `w_j` is sought that integrates `P_k` and `P_k log|u|`, `k < n`,
+//! The rule has `n` nodes `u_j` and weights `w_j` and integrates `P_k` and `P_k log|u|`, `k < n`,
 //! exactly over an interval: `2n` equations for `2n` unknowns. `u` is the offset from the singular
 //! point, which may lie inside the interval, at its end or outside.
 //!
-//! The way there is a continuation (Ma, Rokhlin & Wandzura 1996): with `log sqrt(u^2 + e^2)` in place of
-//! `log|u|` and `e` of the interval's size, the Gauss-Legendre rule of `n` nodes nearly does; `e` is then
-//! lowered in steps, each solved by damped Newton iterations from the one before, down to zero.
-//! The functions are nearly dependent (condition numbers beyond 1e16), so moments, Jacobian and solver
-//! work in double-double arithmetic; directions still lost to rounding there are left alone.
-//! For a singularity at the end or outside, `P_k` and `P_k log u` are a Chebyshev system, and the rule exists,
-//! is unique and has positive weights (Karlin & Studden 1966); for one inside, existence is what is found.
+//! The rule is found by continuation (Ma, Rokhlin & Wandzura 1996). With `log sqrt(u^2 + e^2)` in
+//! place of `log|u|` and `e` of the interval's size, the Gauss-Legendre rule of `n` nodes nearly
+//! solves the equations. Then `e` is lowered in steps down to zero; each step is solved by damped
+//! Newton iterations from the solution of the step before. The functions are nearly dependent
+//! (condition numbers beyond 1e16), so moments, Jacobian and solver work in double-double
+//! arithmetic; directions that are lost to rounding even there are left unchanged. For a
+//! singularity at the end or outside, `P_k` and `P_k log u` are a Chebyshev system, and the rule
+//! exists, is unique and has positive weights (Karlin & Studden 1966). For a singularity inside, it
+//! is not known beforehand whether the rule exists; the generator shows it by finding the rule.
 
 mod moments;
 mod newton;
@@ -36,8 +39,8 @@ pub struct Generated {
     pub residual: f64,
 }
 
-/// The rule on `[-1, 1]` with `2 order` nodes for a singularity at node `target` of the Gauss-Legendre
-/// rule of `order` nodes.
+/// The rule on `[-1, 1]` with `2 order` nodes for a singularity at node `target` of the
+/// Gauss-Legendre rule of `order` nodes.
 ///
 /// # Errors
 /// For an order or target that does not exist, or if the continuation fails.
@@ -49,8 +52,8 @@ pub fn own(order: usize, target: usize) -> Result<Generated> {
     })
 }
 
-/// The rule on `[-1, 1]` with `2 order` nodes for a singularity at `x + 2`, where `x` is node `target` of
-/// the Gauss-Legendre rule of `order` nodes: the target lies on the panel to the right.
+/// The rule on `[-1, 1]` with `2 order` nodes for a singularity at `x + 2`, where `x` is node
+/// `target` of the Gauss-Legendre rule of `order` nodes: the target lies on the panel to the right.
 ///
 /// # Errors
 /// For an order or target that does not exist, or if the continuation fails.

@@ -29,12 +29,14 @@ pub enum Family {
     Neighbour,
 }
 
-/// A generalised Gaussian rule on `[-1, 1]` for `phi(x) + psi(x) log|x - y|` with the singular point `y` at a
-/// node `x_i` of the `p`-point Gauss-Legendre panel `[-1, 1]`, or of an equally long panel beside it.
+/// A generalised Gaussian rule on `[-1, 1]` for `phi(x) + psi(x) log|x - y|` with the singular
+/// point `y` at a node `x_i` of the `p`-point Gauss-Legendre panel `[-1, 1]`, or of an equally long
+/// panel beside it.
 ///
-/// With `2p` nodes it is exact for polynomials `phi` and `psi` of degree up to `2p - 1` (Kolm & Rokhlin
-/// 2001 use 20 nodes on the own panel and 24 on neighbours for `p = 10`; 20 do for both). All weights
-/// are positive and all nodes inside. Rules of mirrored targets mirror each other exactly.
+/// With `2p` nodes it is exact for polynomials `phi` and `psi` of degree up to `2p - 1` (Kolm &
+/// Rokhlin 2001 use 20 nodes on the own panel and 24 on neighbours for `p = 10`; 20 do for both).
+/// All weights are positive and all nodes inside. Rules of mirrored targets mirror each other
+/// exactly.
 ///
 /// ```
 /// use panel_quadrature::{GaussLegendre, KolmRokhlin};
@@ -51,7 +53,8 @@ pub enum Family {
 pub struct KolmRokhlin {
     /// Nodes in `(-1, 1)`, ascending.
     pub nodes: &'static [f64],
-    /// Nodes less the singular point, to full relative precision, which `nodes` alone would not give.
+    /// Nodes minus the singular point, to full relative precision. Subtraction from `nodes` would
+    /// lose digits.
     pub offsets: &'static [f64],
     /// Weights, positive, summing to 2.
     pub weights: &'static [f64],
@@ -211,8 +214,8 @@ fn read(order: usize, own: (&'static str, &str), neighbour: (&'static str, &str)
     })
 }
 
-/// Makes the data file of a family and order anew, with the [generator](crate::generate). Takes a minute or
-/// so for order 16.
+/// Makes the data file of a family and order anew, with the [generator](crate::generate). Order 16
+/// takes about a minute.
 ///
 /// # Errors
 /// If the generator fails.

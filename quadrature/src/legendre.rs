@@ -50,7 +50,8 @@ pub fn series_with_derivative_complex(
     forward(coefficients, z, Complex64::ZERO, Complex64::ONE)
 }
 
-/// Clenshaw's recurrence `b_k = c_k + (2k+1)/(k+1) t b_{k+1} - (k+1)/(k+2) b_{k+2}`; the sum is `b_0`.
+/// Clenshaw's recurrence `b_k = c_k + (2k+1)/(k+1) t b_{k+1} - (k+1)/(k+2) b_{k+2}`; the sum is
+/// `b_0`.
 fn clenshaw<T>(coefficients: &[f64], t: T, zero: T) -> T
 where
     T: Copy + Add<f64, Output = T> + Mul<f64, Output = T> + Mul<Output = T> + Sub<Output = T>,

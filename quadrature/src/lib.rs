@@ -1,5 +1,5 @@
-//! Quadrature on panels: Gauss-Legendre rules, interpolation on their nodes, and generalised Gaussian
-//! rules for logarithmic singularities.
+//! Quadrature on panels: Gauss-Legendre rules, interpolation on their nodes, and generalised
+//! Gaussian rules for logarithmic singularities.
 //!
 //! | what | where |
 //! |---|---|

@@ -16,10 +16,11 @@ static RULES: LazyLock<Result<BTreeMap<usize, Columns>>> =
 
 /// A generalised Gaussian rule on `[0, 1]` for `phi(x) + psi(x) log x`, singular at 0.
 ///
-/// With `m` nodes it is exact for polynomials `phi` and `psi` of degree up to `m - 1`: `2m` functions, which
-/// form a Chebyshev system, so that such a rule exists, with nodes inside and positive weights (Ma,
-/// Rokhlin & Wandzura 1996). To integrate over a panel cut at a target, scale one rule to each side:
-/// an interval of length `L` has nodes `L x_j` from the target, weights `L w_j`.
+/// With `m` nodes it is exact for polynomials `phi` and `psi` of degree up to `m - 1`. These are
+/// `2m` functions that form a Chebyshev system, so such a rule exists, with nodes inside and
+/// positive weights (Ma, Rokhlin & Wandzura 1996). To integrate over a panel cut at a target, scale
+/// one rule to each side: an interval of length `L` has nodes at distances `L x_j` from the target
+/// and weights `L w_j`.
 ///
 /// ```
 /// let rule = panel_quadrature::LogEndpoint::new(10)?;
@@ -30,7 +31,8 @@ static RULES: LazyLock<Result<BTreeMap<usize, Columns>>> =
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct LogEndpoint {
-    /// Nodes, as distances from the singular end: ascending in `(0, 1)`, to full relative precision.
+    /// Nodes, as distances from the singular end: ascending in `(0, 1)`, to full relative
+    /// precision.
     pub distances: &'static [f64],
     /// Weights, positive, summing to 1.
     pub weights: &'static [f64],

@@ -6,12 +6,13 @@ use crate::error::{QuadratureError, Result, check_finite, check_length};
 use crate::gauss_legendre::GaussLegendre;
 use crate::legendre;
 
-/// The polynomials of degree below `p` on `[-1, 1]`, known by their values at `p` Gauss-Legendre nodes.
+/// The polynomials of degree below `p` on `[-1, 1]`, known by their values at `p` Gauss-Legendre
+/// nodes.
 ///
 /// Interpolation is barycentric: `l_j(t) = (b_j / (t - x_j)) / sum_k b_k / (t - x_k)` with
 /// `b_j = (-1)^j / |P'_p(x_j)|` (Berrut & Trefethen 2004; these weights: Wang & Xiang 2012). Beyond
-/// the panel's ends that quotient loses digits, and `l_j(t) = P_p(t) / (P'_p(x_j) (t - x_j))` is used
-/// (Webb, Trefethen & Gonnet 2012).
+/// the panel's ends that quotient loses digits, and `l_j(t) = P_p(t) / (P'_p(x_j) (t - x_j))` is
+/// used (Webb, Trefethen & Gonnet 2012).
 ///
 /// ```
 /// let panel = panel_quadrature::PanelBasis::new(16)?;
@@ -63,7 +64,8 @@ impl PanelBasis {
         self.rule.weights()
     }
 
-    /// Fills `row[j]` with `l_j(t)`, so that `sum_j row[j] f(x_j)` interpolates `f` at `t`. Allocates nothing.
+    /// Fills `row[j]` with `l_j(t)`, so that `sum_j row[j] f(x_j)` interpolates `f` at `t`.
+    /// Allocates nothing.
     ///
     /// `t` may lie somewhat outside `[-1, 1]`; errors grow like `(|t| + sqrt(t^2 - 1))^p` there.
     ///
@@ -80,10 +82,12 @@ impl PanelBasis {
         Ok(())
     }
 
-    /// Fills `row[j]` with `l_j(x_node + offset)`, with full relative precision however small the offset.
+    /// Fills `row[j]` with `l_j(x_node + offset)`, with full relative precision however small the
+    /// offset.
     ///
     /// # Errors
-    /// If there is no such node, `row` is not as long as the panel's order, or `offset` is not finite.
+    /// If there is no such node, `row` is not as long as the panel's order, or `offset` is not
+    /// finite.
     pub fn interpolation_row_near(&self, node: usize, offset: f64, row: &mut [f64]) -> Result<()> {
         let x = self.check_near(node, offset, row.len())?;
         let t = x + offset;
@@ -95,14 +99,16 @@ impl PanelBasis {
         Ok(())
     }
 
-    /// Fills `row` so that `sum_j row[j] f(x_j) = (f(x_node + offset) - f(x_node)) / offset` for polynomials
-    /// of degree below `p`: the divided difference, whose limit at `offset = 0` is the derivative.
+    /// Fills `row` so that `sum_j row[j] f(x_j) = (f(x_node + offset) - f(x_node)) / offset` for
+    /// polynomials of degree below `p`: the divided difference, whose limit at `offset = 0` is the
+    /// derivative.
     ///
-    /// Nothing is subtracted that is nearly equal, so a difference of curve points has full
-    /// relative precision: multiply by `offset`.
+    /// No nearly equal numbers are subtracted. So `offset` times this is a difference of curve
+    /// points to full relative precision.
     ///
     /// # Errors
-    /// If there is no such node, `row` is not as long as the panel's order, or `offset` is not finite.
+    /// If there is no such node, `row` is not as long as the panel's order, or `offset` is not
+    /// finite.
     pub fn divided_difference_row(&self, node: usize, offset: f64, row: &mut [f64]) -> Result<()> {
         let x = self.check_near(node, offset, row.len())?;
         if (x + offset).abs() > 1.0 {
@@ -110,7 +116,8 @@ impl PanelBasis {
             row.iter_mut().for_each(|l| *l /= offset);
         } else {
             self.quotient(node, |j| self.distance(node, offset, j), row);
-            // l_j / offset = (b_j / d_j) / (b_i + offset sum_k b_k / d_k), without the division by offset.
+            // l_j / offset = (b_j / d_j) / (b_i + offset sum_k b_k / d_k) needs no division by
+            // offset.
             let hit = (0..row.len()).find(|&j| j != node && self.distance(node, offset, j) == 0.0);
             if let Some(j) = hit {
                 row[j] = 1.0 / offset;
@@ -126,7 +133,8 @@ impl PanelBasis {
         Ok(())
     }
 
-    /// The matrix from node values to values at `points`: one [row](Self::interpolation_row) per point.
+    /// The matrix from node values to values at `points`: one [row](Self::interpolation_row) per
+    /// point.
     ///
     /// # Errors
     /// If a point is not finite.
@@ -143,7 +151,8 @@ impl PanelBasis {
     }
 
     /// The matrix from node values to values of the derivative at the nodes,
-    /// `D_ij = (b_j / b_i) / (x_i - x_j)`, rows summing to zero (Berrut & Trefethen 2004, section 9.3).
+    /// `D_ij = (b_j / b_i) / (x_i - x_j)`, with rows that sum to zero (Berrut & Trefethen 2004,
+    /// section 9.3).
     pub fn differentiation_matrix(&self) -> Mat<f64> {
         let (x, b) = (self.nodes(), &self.barycentric);
         let mut matrix = Mat::from_fn(self.order(), self.order(), |i, j| {
@@ -178,11 +187,13 @@ impl PanelBasis {
         Ok(coefficients)
     }
 
-    /// How well the panel resolves a function: the larger of its last two Legendre coefficients, relative to
-    /// the largest of all. Two, because an even or odd function has every other one zero.
+    /// How well the panel resolves a function: the larger of its last two Legendre coefficients,
+    /// relative to the largest of all. Two are needed because every second coefficient of an even
+    /// or odd function is zero.
     ///
-    /// Near 1e-16 when resolved to rounding, near 1 when not at all; 0 for the zero function and infinity
-    /// where a value is not finite. Panels of one or two nodes cannot tell: 1.
+    /// The value is near 1e-16 for a function resolved to rounding, near 1 for one that is not
+    /// resolved, 0 for the zero function, and infinity if a value is not finite. Panels of one or
+    /// two nodes cannot tell, and the value is 1.
     ///
     /// # Errors
     /// If `values` is not as long as the panel's order.
@@ -206,8 +217,8 @@ impl PanelBasis {
         }
     }
 
-    /// The barycentric quotient for given distances from the nodes; `pivot` is taken without division, so it
-    /// may be at any distance, zero included.
+    /// The barycentric quotient for given distances from the nodes. There is no division by the
+    /// distance of `pivot`, so it may be anything, zero included.
     fn quotient(&self, pivot: usize, distance: impl Fn(usize) -> f64, row: &mut [f64]) {
         let to_pivot = distance(pivot);
         let mut sum = 0.0;

@@ -1,7 +1,8 @@
 //! Reading and writing the data files of rules.
 //!
-//! A file is plain text: comments start with `#`; a line `rule <number>` starts a rule, and each further
-//! line is one node, `<offset> <weight>`. Eighteen significant digits, so doubles survive the round trip.
+//! A file is plain text. Comments start with `#`; a line `rule <number>` starts a rule, and each
+//! further line is one node, `<offset> <weight>`. Numbers have eighteen significant digits, so
+//! doubles survive the round trip.
 
 use std::collections::BTreeMap;
 

@@ -139,8 +139,8 @@ fn tolerance(text: &str) -> Result<f64, String> {
 pub struct Measured {
     pub n: usize,
     pub tolerance: f64,
-    /// The worst of those of velocity, pressure and gradient, as far as asked for: each relative to the direct sum in the Euclidean norm
-    /// over 500 of the targets.
+    /// The largest of the errors of velocity, pressure and gradient, of those that were asked for.
+    /// Each is relative to the direct sum in the Euclidean norm over 500 of the targets.
     pub error: f64,
     /// What depends on kernel and tolerance alone.
     pub operators_seconds: f64,
@@ -153,7 +153,8 @@ pub struct Measured {
     pub direct_pairs_per_second: f64,
     /// Pairs of a direct sum in the same time on as many threads, per target.
     pub pairs_per_point: f64,
-    /// Of the whole process since the case began, points and strengths included; 0 where it is not known.
+    /// Peak memory of the whole process since the case began, points and strengths included; 0
+    /// where it is not known.
     pub peak_bytes: u64,
 }
 

@@ -118,7 +118,8 @@ fn textbook_formulas() {
                 assert_eq!(flow.velocity.len(), count + 5);
                 for (i, &target) in case.targets.iter().enumerate() {
                     let (u, p) = textbook(&case, kinds, target);
-                    // Sums cancel: errors are relative to the terms, which are of order one at most near a source.
+                    // Terms of a sum cancel. So errors are relative to the terms, which are of
+                    // order one at most near a source.
                     let bound = 1e-13 * (count as f64) * (1.0 + inner(u, u).sqrt() + p.abs());
                     for k in 0..3 {
                         assert!(
@@ -135,7 +136,8 @@ fn textbook_formulas() {
     }
 }
 
-/// Central differences of fourth order of the velocity, or of the pressure and the gradient, along an axis.
+/// Central differences of fourth order of the velocity, or of the pressure and the gradient, along
+/// an axis.
 fn difference<T>(
     value: impl Fn([f64; 3]) -> T,
     at: [f64; 3],

@@ -10,7 +10,8 @@ use crate::tree::Costs;
 
 const COUNT: usize = 600;
 
-/// Potential of a unit charge and its gradient at a distance `d` from it, without the part mollified over `reach` if there is one.
+/// Potential of a unit charge and its gradient at a distance `d` from it, minus the part mollified
+/// over `reach` if `reach` is given.
 fn charge(splitting: &Splitting, d: [f64; 3], reach: Option<f64>) -> [f64; 4] {
     let r2: f64 = d.iter().map(|d| d * d).sum();
     let mut chain = [0.0; 3];
@@ -49,7 +50,8 @@ fn sets() -> [(Parameters, f64); 2] {
     })
 }
 
-/// Relative errors of far field plus residuals, in the potential and its gradient, of charges in the boxes of a tree.
+/// Relative errors of the far field plus residuals, for the potential and the gradient of charges
+/// in the boxes of a tree.
 fn errors(operators: &Operators, tree: &Tree) -> [f64; 4] {
     let splitting = Splitting::new(operators.parameters.waves);
     let fields = Fields::of::<Laplace<4>>();

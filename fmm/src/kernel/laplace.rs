@@ -2,9 +2,11 @@
 
 use f64_lanes::{Isa, Lanes};
 
-use super::{Chain, EIGHTH, MOST, Pair};
+use super::chain::{Chain, EIGHTH};
+use super::pair::{MOST, Pair};
 
-/// One charge $q$ per source; the potential, $q/4\pi r$ in full (`OUTPUTS` = 1), and its gradient (`OUTPUTS` = 4).
+/// One charge $q$ per source. The outputs are the potential, $q/4\pi r$ for the full kernel
+/// (`OUTPUTS` = 1), and also its gradient (`OUTPUTS` = 4).
 #[derive(Clone, Copy)]
 pub(crate) struct Laplace<const OUTPUTS: usize>;
 

@@ -7,11 +7,16 @@
 
 use f64_lanes::{Isa, Lanes};
 
-use super::{Chain, EIGHTH, MOST, Pair, broadcast, dot, scaled};
+use super::chain::{Chain, EIGHTH};
+use super::pair::{MOST, Pair};
+use super::vector::{broadcast, dot, scaled};
 
-/// Numbers per source: force 3, stresslet density 3 and normal 3, torque 3, flux 1, in this order. Of these
-/// `STRENGTHS` = 3 has the force, 6 the stresslet, 9 both, and 13 all. Numbers per target: velocity 3, pressure 1,
-/// gradient 9 ($\partial u_i / \partial x_j$, row by row); `OUTPUTS` = 3, 4 or 13 of them.
+/// Singularities of Stokes flow.
+///
+/// Numbers per source: force 3, stresslet density 3 and normal 3, torque 3, flux 1, in this order.
+/// `STRENGTHS` = 3 has the force, 6 the stresslet, 9 both, and 13 all of them. Numbers per target:
+/// velocity 3, pressure 1, gradient 9 ($\partial u_i / \partial x_j$, row by row); `OUTPUTS` is 3,
+/// 4 or 13 of them.
 #[derive(Clone, Copy)]
 pub(crate) struct Stokes<const STRENGTHS: usize, const OUTPUTS: usize>;
 
@@ -152,7 +157,8 @@ fn stresslet<S: Isa, const SINGULAR: bool, const OUTPUTS: usize>(
     let (xq, xn) = (dot(x, q), dot(x, n));
     let both = xq * xn;
     let radial = chain.c5() * both;
-    // The product q.n is the same in all lanes, but one register more costs less than a layout of its own.
+    // The product q.n is the same in all lanes, but one more register costs less than a layout of
+    // its own.
     let qn = dot(q, n);
     if SINGULAR {
         add_multiple(x, radial, out);

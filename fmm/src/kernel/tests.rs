@@ -5,7 +5,8 @@ use pulp::Scalar;
 
 use super::*;
 
-/// $\partial_x^a \partial_y^b \partial_z^c$ of $e^{-r^2/2}$ for the axes listed: products of Hermite polynomials.
+/// Derivative $\partial_x^a \partial_y^b \partial_z^c$ of $e^{-r^2/2}$ along the axes listed: a
+/// product of Hermite polynomials.
 fn derivative(x: [f64; 3], axes: &[usize]) -> f64 {
     let product: f64 = (0..3)
         .map(|axis| {
@@ -35,7 +36,8 @@ fn permutation(i: usize, j: usize, k: usize) -> f64 {
     (j as f64 - i as f64) * (k as f64 - j as f64) * (k as f64 - i as f64) / 2.0
 }
 
-/// Velocity component `i` of all singularities of the kernel that $B = e^{-r^2/2}$ makes, differentiated along `axes`.
+/// Velocity component `i` of all singularities of the kernel made of $B = e^{-r^2/2}$,
+/// differentiated along `axes`.
 fn velocity(x: [f64; 3], strength: &[f64; 13], i: usize, axes: &[usize]) -> f64 {
     let d = |own: &[usize]| derivative(x, &[own, axes].concat());
     let l = |own: &[usize]| laplacian(x, &[own, axes].concat());

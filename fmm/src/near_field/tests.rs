@@ -51,7 +51,8 @@ fn polynomials(terms: usize) -> [Vec<f64>; 4] {
     [1, 2, 3, 4].map(|n| polynomial(n, terms))
 }
 
-/// The unit cube in `cells` leaves a side, and the points in each; leaves have reaches by parity if `mixed`.
+/// The unit cube divided into `cells` leaves along each side, with the points in each leaf. If
+/// `mixed`, the reach of a leaf depends on its parity.
 fn tree(
     random: &mut fastrand::Rng,
     cells: usize,

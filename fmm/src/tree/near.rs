@@ -4,8 +4,10 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::boxes::{Leaf, Near};
+use super::points::SortedPoints;
 use super::refine::{Cell, Cells, Role};
-use super::{Near, SortedPoints, Tree};
+use super::root::Root;
 
 /// Smallest box around some points.
 #[derive(Clone, Copy, Debug)]
@@ -58,13 +60,10 @@ struct CellBounds {
 }
 
 impl CellBounds {
-    fn new(tree: &Tree, cells: &Cells) -> CellBounds {
+    fn new(cells: &Cells, sources: &SortedPoints, targets: Option<&SortedPoints>) -> CellBounds {
         CellBounds {
-            sources: bounds(cells, &tree.sources, |cell| &cell.sources),
-            targets: tree
-                .targets
-                .as_ref()
-                .map(|points| bounds(cells, points, |cell| &cell.targets)),
+            sources: bounds(cells, sources, |cell| &cell.sources),
+            targets: targets.map(|points| bounds(cells, points, |cell| &cell.targets)),
         }
     }
 
@@ -103,17 +102,23 @@ fn bounds(
     levels
 }
 
-/// Fills in the lists of the leaves of a tree made of the cells.
+/// Fills in the lists of the leaves that the cells of these points have.
 ///
-/// A leaf sees all colleagues of its own level over its own side, and those colleagues of its ancestors that are
-/// leaves over their sides.
-pub(super) fn fill(tree: &mut Tree, cells: &Cells) {
-    let bounds = CellBounds::new(tree, cells);
+/// A leaf sees all colleagues of its own level within a reach of its own side. Of the colleagues of
+/// its ancestors it sees those that are leaves, within a reach of their sides.
+pub(super) fn fill(
+    leaves: &mut [Leaf],
+    cells: &Cells,
+    root: &Root,
+    sources: &SortedPoints,
+    targets: Option<&SortedPoints>,
+) {
+    let bounds = CellBounds::new(cells, sources, targets);
     // Larger leaves that each cell of the level above sees.
     let mut above: Vec<Vec<Address>> = vec![Vec::new()];
     let mut filled = 0;
     for level in 1..cells.levels.len() {
-        let side = tree.levels[0].side * 2f64.powi(-(level as i32));
+        let side = root.side(level);
         let here = &cells.levels[level];
         let lists: Vec<Vec<Near>> = here
             .par_iter()
@@ -130,7 +135,7 @@ pub(super) fn fill(tree: &mut Tree, cells: &Cells) {
             })
             .collect();
         for list in lists {
-            tree.leaves[filled].near = list;
+            leaves[filled].near = list;
             filled += 1;
         }
         above = here

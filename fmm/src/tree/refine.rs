@@ -4,10 +4,15 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::boxes::{GriddedBox, Leaf, Level};
+use super::costs::Costs;
 use super::root::Root;
 use super::sorting::{DEPTH, Keys, octant};
-use super::{COLLEAGUES, Costs, GriddedBox, Leaf, Level, NONE};
 
+/// No such box.
+const NONE: u32 = u32::MAX;
+/// Colleagues a box can have, itself included.
+const COLLEAGUES: usize = 27;
 /// The slot of a cell among its own colleagues.
 const SELF: usize = COLLEAGUES / 2;
 /// Times the decision of every cell of a level is looked at again, given its colleagues'.
@@ -32,8 +37,8 @@ pub(super) struct Cell {
     pub place: [i64; 3],
     pub sources: Range<u32>,
     pub targets: Range<u32>,
-    /// Cells of its level around it, itself in the middle: at $d_x + 1 + 3 (d_y + 1) + 9 (d_z + 1)$ the one whose place is $d$ further,
-    /// or [`NONE`].
+    /// The cells of its level around it, with itself in the middle. At
+    /// $d_x + 1 + 3 (d_y + 1) + 9 (d_z + 1)$ is the cell whose place is $d$ further, or [`NONE`].
     pub colleagues: [u32; COLLEAGUES],
     /// In the level below; empty if a grid cannot pay.
     pub children: Range<u32>,
@@ -42,7 +47,8 @@ pub(super) struct Cell {
     pub role: Role,
     /// Part of the pairs of points in colleagues that a grid takes from the direct sum.
     saved: f64,
-    /// Time saved by the best of all gridded trees below, if colleagues do as it does; its own grid included.
+    /// Time saved by the best set of grids in this cell and below, its own grid included, if its
+    /// colleagues decide as it does.
     worth: f64,
 }
 
@@ -54,9 +60,10 @@ pub(super) struct Cells {
 impl Cells {
     /// Cells of the points, with their roles.
     ///
-    /// A grid of a box saves direct pairs with gridded colleagues only, and may pay only after several levels; so
-    /// what a box is worth is first computed from the finest cells up, as if its colleagues decided like it. Then,
-    /// from the root down, boxes worth a grid get one, and each cell decides again knowing its colleagues.
+    /// The grid of a box saves direct pairs with gridded colleagues only, and may pay only after
+    /// several levels. So the worth of a box is first computed from the finest cells up, as if its
+    /// colleagues decided as it does. Then, from the root down, boxes that are worth a grid get
+    /// one, and each cell decides again with the decisions of its colleagues known.
     pub fn new(keys: &Keys, finest: usize, costs: &Costs) -> Cells {
         let mut cells = Cells {
             levels: vec![vec![Cell::root(keys)]],
@@ -136,7 +143,8 @@ impl Cells {
         grown
     }
 
-    /// Pairs of a source and a target in a cell and its colleagues, half of each of the colleagues'.
+    /// Pairs of a source and a target in a cell and its colleagues; half of the pairs with each
+    /// colleague are counted.
     fn links(&self, level: usize, i: usize, counts: impl Fn(&Cell) -> bool) -> f64 {
         let cells = &self.levels[level];
         let cell = &cells[i];
@@ -397,7 +405,8 @@ impl Cell {
     }
 }
 
-/// Where a colleague of a child in `octant` is: the slot of its parent among the parent's colleagues, and its octant.
+/// Where a colleague of a child in `octant` is: the slot of its parent among the colleagues of the
+/// child's parent, and its octant there.
 fn beyond(octant: u8, slot: usize) -> (usize, u8) {
     let mut parent_slot = 0;
     let mut other = 0;
@@ -412,11 +421,12 @@ fn beyond(octant: u8, slot: usize) -> (usize, u8) {
     (parent_slot, other)
 }
 
-/// Part of the pairs in colleagues that halving the boxes takes from the direct sum, where it leaves `remaining` of
-/// the pairs in colleagues: $2^{-d}$ for points that are uniform in $d$ dimensions.
+/// Part of the pairs in colleagues that halving the boxes takes from the direct sum, if it leaves
+/// `remaining` of the pairs in colleagues. `remaining` is $2^{-d}$ for points that are uniform in
+/// $d$ dimensions.
 ///
-/// Of the pairs in colleagues of unit side $1, \frac23, \frac\pi9, \frac{4\pi}{81}$ are within the reach 1
-/// for $d = 0, \dots, 3$, before and after.
+/// Before and after halving, $1, \frac23, \frac\pi9, \frac{4\pi}{81}$ of the pairs in colleagues of
+/// unit side are within the reach 1 for $d = 0, \dots, 3$.
 fn saved(remaining: f64) -> f64 {
     const WITHIN: [f64; 4] = [1.0, 0.6667, 0.3491, 0.1551];
     let remaining = remaining.clamp(0.125, 1.0);

@@ -16,8 +16,8 @@ pub(super) struct Root {
 }
 
 impl Root {
-    /// Roots of several sides around the points, all with their lower corner at that of the points: points in a
-    /// plane then lie within a layer of boxes, not on the faces between two.
+    /// Roots of several sides around the points. All have their lower corner at that of the points:
+    /// points in a plane then lie within a layer of boxes, not on the faces between two layers.
     pub fn candidates(sources: &[[f64; 3]], targets: Option<&[[f64; 3]]>) -> Vec<Root> {
         let mut low = [f64::INFINITY; 3];
         let mut high = [f64::NEG_INFINITY; 3];

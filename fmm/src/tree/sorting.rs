@@ -2,13 +2,14 @@
 
 use rayon::prelude::*;
 
-use super::SortedPoints;
+use super::points::SortedPoints;
 use super::root::Root;
 
 /// Levels that keys tell apart.
 pub(super) const DEPTH: usize = 42;
 
-/// Morton keys of sources and targets, ascending: three bits for each level, the coarsest the highest.
+/// Morton keys of sources and targets, ascending: three bits for each level, with the coarsest
+/// level in the highest bits.
 pub(super) struct Keys<'a> {
     pub sources: &'a [u128],
     /// `None` if the targets are the sources.

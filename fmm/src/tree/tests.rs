@@ -1,3 +1,4 @@
+use std::ops::Range;
 use std::time::Instant;
 
 use proptest::prelude::*;
@@ -190,7 +191,8 @@ fn check_pairs(tree: &Tree) {
             if let Some(near) = found.first() {
                 assert_eq!(near.reach, length);
             }
-            // Differences telescope from the root's to half the side of the last box, unless the pair is beyond.
+            // The differences telescope from the root's length to half the side of the last box,
+            // unless the pair is beyond.
             let mut remaining = tree.levels[0].side / 2.0;
             for level in 1..source_boxes[j].len().min(target_boxes[i].len()) {
                 let place = |number: u32| tree.levels[level].boxes[number as usize].place;
@@ -267,7 +269,8 @@ fn threads_do_not_matter() {
     }
 }
 
-/// Surfaces of spheroids of semi-axes 0.5, 0.5, 1, of 2550 points each, in random orientations on a jittered lattice.
+/// Surfaces of spheroids of semi-axes 0.5, 0.5, 1, of 2550 points each, in random orientations on a
+/// jittered lattice.
 fn spheroids(n: usize, rng: &mut fastrand::Rng) -> Vec<[f64; 3]> {
     let bodies = n / 2550;
     let row = (bodies as f64).cbrt().ceil() as usize;
@@ -296,15 +299,14 @@ fn uniform(points: &[[f64; 3]], root: &Root, depth: usize) -> Tree {
         targets: None,
     };
     let cells = Cells::uniform(&keys, depth);
-    let (levels, leaves) = cells.boxes_and_leaves(root);
-    let mut tree = Tree {
+    let (levels, mut leaves) = cells.boxes_and_leaves(root);
+    near::fill(&mut leaves, &cells, root, &sources, None);
+    Tree {
         sources,
         targets: None,
         levels,
         leaves,
-    };
-    near::fill(&mut tree, &cells);
-    tree
+    }
 }
 
 #[test]

@@ -30,8 +30,8 @@ impl Cloud {
         Self::of((0..count).map(|_| in_cube(random)).collect(), random)
     }
 
-    /// Surfaces of randomly oriented spheroids with semi-axes 0.5, 0.5 and 1, [`ON_SPHEROID`] points each, on a jittered cubic grid of
-    /// spacing 2.4.
+    /// Surfaces of randomly oriented spheroids with semi-axes 0.5, 0.5 and 1, of [`ON_SPHEROID`]
+    /// points each, on a jittered cubic grid of spacing 2.4.
     pub fn spheroids(spheroids: usize, random: &mut Rng) -> Self {
         const SPACING: f64 = 2.4;
         let per_edge = (1..).find(|n: &usize| n.pow(3) >= spheroids).unwrap_or(1);

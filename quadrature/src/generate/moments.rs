@@ -35,7 +35,8 @@ pub(super) struct Point {
 pub(super) struct System {
     pub(super) interval: Interval,
     pub(super) nodes: usize,
-    /// Gauss-Legendre panels halved towards the singular point (or its neighbourhood), down to 2^-110.
+    /// Gauss-Legendre panels, halved towards the singular point (or its neighbourhood) down to
+    /// 2^-110.
     fine: Vec<Point>,
 }
 
@@ -47,8 +48,8 @@ pub(super) struct Values {
 
 /// Halvings of the panels: 2^-110 is below what double-double resolves.
 const LEVELS: i32 = 110;
-/// Nodes per panel of the fine rule. On a panel as long as its distance from the singularity the error
-/// falls like 5.8^(degree - 2 order).
+/// Nodes per panel of the fine rule. On a panel as long as its distance from the singularity the
+/// error falls like 5.8^(degree - 2 order).
 const FINE_ORDER: usize = 48;
 
 impl System {
@@ -69,7 +70,8 @@ impl System {
             graded(zero, from, LEVELS, &mut panel);
             graded(zero, to, LEVELS, &mut panel);
         } else {
-            // Towards the nearer end until the panels are as small as its distance from the singularity.
+            // Panels get smaller towards the nearer end, until they are as small as its distance
+            // from the singularity.
             let (near, far) = if from >= zero { (from, to) } else { (to, from) };
             let ratio = (near / interval.half).abs().to_f64();
             let levels = (2.0 - ratio.log2()).clamp(1.0, LEVELS.into()) as i32;

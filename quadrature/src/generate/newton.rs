@@ -25,8 +25,8 @@ struct Effort {
     iterations: usize,
 }
 
-/// Ranks tried on the way. A rough rule is enough there, and directions that hardly matter are better left
-/// alone; but sometimes only a finer solution leads on.
+/// Ranks tried before the last step. There a rough rule is enough, and directions that hardly
+/// matter are better left unchanged; but sometimes only a finer solution leads further.
 const RANKS_ON_THE_WAY: [f64; 3] = [1e-15, 1e-19, 1e-24];
 /// Ranks of the last iterations, one after the other.
 const LAST_RANKS: [f64; 10] = [
@@ -35,8 +35,8 @@ const LAST_RANKS: [f64; 10] = [
 /// The moment error at which no other way is tried.
 const SATISFIED: f64 = 1e-20;
 
-/// Leads the Gauss-Legendre rule to the rule for the logarithm; returns the best found with its largest
-/// moment error, infinite if every way was lost.
+/// Follows the continuation from the Gauss-Legendre rule to the rule for the logarithm. Returns the
+/// best rule found and its largest moment error, which is infinite if all ways failed.
 pub(super) fn continuation(system: &System) -> (Vec<Point>, f64) {
     let mut best = (Vec::new(), f64::INFINITY);
     for rank in RANKS_ON_THE_WAY {
@@ -119,8 +119,9 @@ fn gauss_legendre(system: &System) -> Vec<Point> {
         .collect()
 }
 
-/// Newton's method with steps limited to half the distance of each node from the singularity and the ends,
-/// and to half of each weight. `None` if it does not converge to nodes inside with positive weights.
+/// Newton's method with steps limited to half the distance of each node from the singularity and
+/// the ends, and to half of each weight. Returns `None` if it does not converge to nodes inside
+/// with positive weights.
 fn newton(
     system: &System,
     start: &[Point],

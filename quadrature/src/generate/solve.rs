@@ -2,8 +2,9 @@
 
 use crate::double_double::Dd;
 
-/// Solves the square system `matrix x = right` by Gaussian elimination with complete pivoting. Pivots
-/// `rank_tolerance` times smaller than the first are taken for zero, and the unknowns without a pivot set to zero.
+/// Solves the square system `matrix x = right` by Gaussian elimination with complete pivoting.
+/// Pivots smaller than `rank_tolerance` times the first are taken for zero, and the unknowns
+/// without a pivot are set to zero.
 pub(super) fn solve(mut matrix: Vec<Vec<Dd>>, mut right: Vec<Dd>, rank_tolerance: f64) -> Vec<Dd> {
     let n = right.len();
     let mut column: Vec<usize> = (0..n).collect();

@@ -18,8 +18,9 @@ fn all(order: usize) -> Vec<(String, f64, KolmRokhlin)> {
     rules
 }
 
-/// Largest error in the moments of `P_k` and `P_k log|x - y|`, `k < 2p`. The integrals of the absolute values
-/// are of order one, so absolute errors are relative to the integrand's natural scale.
+/// Largest error in the moments of `P_k` and `P_k log|x - y|`, `k < 2p`. The integrals of the
+/// absolute values are of order one, so absolute errors are relative to the integrand's natural
+/// scale.
 fn moment_error(y: f64, rule: &KolmRokhlin) -> f64 {
     let n = rule.order();
     let mut exact = vec![0.0; n];
@@ -102,8 +103,8 @@ fn mirrored_targets_have_mirrored_rules() {
     }
 }
 
-/// Functions that are nearly dependent leave a rule for a neighbour a little freedom: with another machine's
-/// `ln` in the last place some nodes move by 1e-13 without a change in any moment.
+/// Functions that are nearly dependent leave a rule for a neighbour a little freedom: another
+/// machine, whose `ln` differs in the last place, moves some nodes by 1e-13 and changes no moment.
 #[test]
 fn generator_repeats_the_tables() {
     let compare = |made: generate::Generated, rule: KolmRokhlin, tolerance: f64| {
@@ -125,7 +126,8 @@ fn generator_repeats_the_tables() {
     );
 }
 
-/// `cos(3x) log|x - y| + exp(x)`: against the Legendre series of the cosine and the closed-form moments.
+/// `cos(3x) log|x - y| + exp(x)`, compared with the Legendre series of the cosine and the
+/// closed-form moments.
 #[test]
 fn converges_for_analytic_factors() {
     for &order in ORDERS {

@@ -17,7 +17,8 @@
 //! | [`linear_flow`] | undisturbed flows |
 //! | [`body_flow`] | the whole flow, as it was solved for |
 //! | [`problem`] | exterior problems, answered with an estimate of the error |
-//! | [`resistance`] | resistance and mobility matrices |
+//! | [`resistance`] | resistance and mobility, to a tolerance |
+//! | `rigid_matrices` | resistance and mobility matrices and their scalar functions |
 //! | `rigid` | rigid motions of the surface, force and torque of a density |
 //! | [`shell`] | the projection onto rigid motions |
 //! | [`slip`] | surface velocities of swimmers |
@@ -47,6 +48,7 @@ pub mod progress;
 pub mod refinement;
 pub mod resistance;
 mod rigid;
+mod rigid_matrices;
 pub mod shell;
 pub mod slip;
 pub mod special;

@@ -17,11 +17,12 @@
 //! | [`linear_flow`] | undisturbed flows |
 //! | [`body_flow`] | the whole flow, as it was solved for |
 //! | [`problem`] | exterior problems, answered with an estimate of the error |
-//! | [`resistance`] | resistance and mobility, to a tolerance |
+//! | [`resistance`] | all resistance and mobility functions, to a tolerance |
 //! | `rigid_matrices` | resistance and mobility matrices and their scalar functions |
 //! | `rigid` | rigid motions of the surface, force and torque of a density |
 //! | [`shell`] | the projection onto rigid motions |
 //! | [`slip`] | surface velocities of swimmers |
+//! | [`strain`] | resistance and mobility functions of strain, intrinsic viscosity |
 //! | [`stresslet`] | the stresslet |
 //! | [`progress`] | how a long computation tells where it is |
 
@@ -53,6 +54,7 @@ pub mod shell;
 pub mod slip;
 pub mod special;
 mod storage;
+pub mod strain;
 pub mod stresslet;
 pub mod surface;
 pub mod surface_grid;

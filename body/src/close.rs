@@ -18,7 +18,8 @@ use super::densities::Densities;
 use super::discretization::{Discretization, Node};
 use super::near::{NearNodes, NearRules, Sight, Stretch, offsets, reference};
 use crate::kernel::{
-    DENSITIES, Modes, Potential, RingDensities, RingFields, SourceRings, TargetRing, Workspace,
+    Columns, DENSITIES, Modes, Potential, RingDensities, RingFields, SourceRings, TargetRing,
+    Workspace,
 };
 use bodies_of_revolution::{Meridian, Topology};
 
@@ -154,13 +155,13 @@ impl CloseFlow {
         target: TargetRing,
         buffers: &mut Buffers,
     ) {
-        self.engine.add_fields(
+        buffers.fields.add(
+            &self.engine,
             potential,
             target,
             &buffers.sources,
             &buffers.densities,
             &mut buffers.workspace,
-            &mut buffers.fields,
         );
     }
 }
@@ -202,18 +203,19 @@ impl Buffers {
     /// The densities at the sources, which begin with near node `first`, in the order of the workspace.
     fn interpolate(&mut self, values: MatRef<'_, f64>, first: usize) {
         let (order, rows) = (values.nrows(), values.ncols());
-        let columns = &self.workspace.order;
-        self.densities.resize(rows, self.workspace.columns());
+        let sources = &self.workspace.order;
+        let columns = Columns::of(&self.workspace);
+        self.densities.resize(rows, columns);
         let stride = self.densities.stride;
         // Near and far columns stand apart.
-        let near = self.workspace.columns().near;
-        for run in [0..near, near..columns.len()] {
+        let near = columns.near;
+        for run in [0..near, near..sources.len()] {
             if run.is_empty() {
                 continue;
             }
-            let (place, length) = (self.workspace.column(run.start), run.len());
+            let (place, length) = (columns.place(run.start), run.len());
             self.gathered.clear();
-            for &source in &columns[run] {
+            for &source in &sources[run] {
                 let weight = self.near.nodes[first + source].weight;
                 let row = &self.near.interpolation[(first + source) * order..][..order];
                 self.gathered.extend(row.iter().map(|l| l * weight));
@@ -266,12 +268,12 @@ impl Buffers {
         densities: &Densities,
     ) -> Result<(), QuadratureError> {
         let order = discretization.order();
-        self.densities
-            .resize(densities.rows(), self.workspace.columns());
+        let columns = Columns::of(&self.workspace);
+        self.densities.resize(densities.rows(), columns);
         self.densities.values.fill(0.0);
         self.gathered.resize(order, 0.0);
         for (place, &source) in self.workspace.order.iter().enumerate() {
-            let column = self.workspace.column(place);
+            let column = columns.place(place);
             let (panel, end) = self.rings[source];
             let (t, sign) = match end {
                 End::Start => (-1.0, 1.0),

@@ -18,10 +18,12 @@ use std::f64::consts::PI;
 
 use pulp::Simd;
 
-use super::modes::{Kernel, Parity};
+use super::double_layer::DoubleLayer;
+use super::invariant::{Kernel, Parity};
 use super::moments::{CubicMoments, Moments};
 use super::pair::{Pair, Separation};
-use super::{DoubleLayer, SingleLayer, SingleLayerPressure};
+use super::pressure::SingleLayerPressure;
+use super::single_layer::SingleLayer;
 use f64_lanes::Lanes;
 
 /// Components of the densities: $\sigma$, $\varrho$, $y^\theta$, $y^t$, three each (radial, azimuthal, axial).

@@ -2,10 +2,11 @@
 
 use pulp::Simd;
 
-use super::modes::{Kernel, Parity};
+use super::double_layer::DoubleLayer;
+use super::invariant::{Kernel, Parity};
 use super::moments::Moments;
 use super::pair::{Pair, Separation};
-use super::{DoubleLayer, SingleLayer};
+use super::single_layer::SingleLayer;
 use f64_lanes::Lanes;
 
 /// The kernel $D_{ij} + \eta S_{ij}$ (Hebeker 1986): the second-kind equation $(\frac12 + D + \eta S)\sigma = f$ of the exterior

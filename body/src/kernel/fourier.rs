@@ -13,7 +13,7 @@ use num_complex::Complex64;
 use pulp::Simd;
 use rustfft::{Fft, FftPlanner};
 
-use super::modes::{Kernel, Parity};
+use super::invariant::{Kernel, Parity};
 use super::pair::Pair;
 use f64_lanes::{Lanes, padded};
 

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use pulp::Simd;
 
-use super::modes::{Kernel, Parity};
+use super::invariant::{Kernel, Parity};
 use super::moments::Moments;
 use super::pair::{Pair, Separation};
 use f64_lanes::Lanes;

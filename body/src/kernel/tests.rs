@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::modes::Parity;
+use super::invariant::Parity;
 use super::pair::Pair;
 use super::*;
 use f64_lanes::Lanes;

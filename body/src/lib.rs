@@ -1,11 +1,12 @@
 //! One body: its modal matrices and their factors, boundary problems on it, and the flow around it.
 //!
-//! Everything here is in the body's own frame: symmetry axis `z`, centre at the origin of its generating curve.
+//! Everything here is in the body's own frame: symmetry axis `z`, centre at the origin of its
+//! generating curve.
 //!
 //! | module | what |
 //! |---|---|
 //! | [`special`] | toroidal functions |
-//! | [`kernel`] | kernels of the layer potentials, in free space and mode by mode: signs and scaling |
+//! | [`kernel`] | kernels of the layer potentials in space and mode by mode: signs, scaling |
 //! | [`dirichlet`] | Dirichlet problems: equations and solver |
 //! | [`mobility`] | bodies that are free to move |
 //! | [`discretization`] | panels and nodes on the generating curve |

@@ -21,8 +21,8 @@ use crate::progress::Progress;
 
 pub use super::rigid_matrices::{MobilityMatrix, ResistanceMatrix, ScalarFunctions};
 
-/// Resistance and mobility about the origin of the body's frame, for rigid motions and for strain, by
-/// different integral equations: that they are inverse to each other is a check of both.
+/// Resistance and mobility about the origin of the body's frame, for rigid motions and for strain,
+/// by different integral equations: that they are inverse to each other is a check of both.
 #[derive(Clone, Debug)]
 pub struct RigidBodyMatrices {
     /// Resistance, by the combined field.
@@ -35,10 +35,10 @@ pub struct RigidBodyMatrices {
     pub free: FreeBodyFunctions,
     /// The volume of the body.
     pub volume: f64,
-    /// Estimated error of every entry $(i, j)$ of a matrix relative to the root of the product of the
-    /// entries $(i, i)$ and $(j, j)$: of each scalar function relative to itself, of $Y^B$ to
-    /// $\sqrt{Y^A Y^C}$. Of the functions of strain: of the $M$ and $m$ relative to themselves, of the
-    /// others to $\sqrt{X^A X^M}$, $\sqrt{Y^A Y^M}$, $\sqrt{Y^C Y^M}$ and, for the free body,
+    /// Estimated error of every entry $(i, j)$ of a matrix relative to the root of the product of
+    /// the entries $(i, i)$ and $(j, j)$: of each scalar function relative to itself, of $Y^B$ to
+    /// $\sqrt{Y^A Y^C}$. Of the functions of strain: of the $M$ and $m$ relative to themselves, of
+    /// the others to $\sqrt{X^A X^M}$, $\sqrt{Y^A Y^M}$, $\sqrt{Y^C Y^M}$ and, for the free body,
     /// $\sqrt{x^a X^M}$, $\sqrt{y^a Y^M}$, $\sqrt{y^c Y^M}$.
     pub error_estimate: f64,
     /// The resolution they were computed with.
@@ -62,8 +62,8 @@ impl RigidBodyMatrices {
         Ok(checked(&curve, panels, order, progress)?.answer)
     }
 
-    /// The matrices to a tolerance: at the first resolution found whose error estimate is below it, or the
-    /// best there is; compare [`error_estimate`](Self::error_estimate) with the tolerance.
+    /// The matrices to a tolerance: at the first resolution found whose error estimate is below it,
+    /// or the best there is; compare [`error_estimate`](Self::error_estimate) with the tolerance.
     ///
     /// # Errors
     /// If the curve is not smooth enough.
@@ -196,8 +196,8 @@ fn checked(
 }
 
 /// The largest difference of an entry of two positive definite matrices relative to
-/// $\sqrt{b_{ii} b_{jj}}$, the largest that it could be in the second: every scalar function counts by its
-/// own size.
+/// $\sqrt{b_{ii} b_{jj}}$, the largest that it could be in the second: every scalar function counts
+/// by its own size.
 fn distance(a: &Matrix6<f64>, b: &Matrix6<f64>) -> f64 {
     let scale = |i: usize, j: usize| (b[(i, i)] * b[(j, j)]).abs().sqrt();
     Matrix6::from_fn(|i, j| (a[(i, j)] - b[(i, j)]) / scale(i, j)).amax()

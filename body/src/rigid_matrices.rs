@@ -1,8 +1,8 @@
 //! The six-by-six resistance and mobility matrices of one body and their scalar functions.
 //!
-//! A body of revolution with axis $d = e_z$, in a fluid of viscosity $\mu$ at rest, moves with $U$ (of the
-//! point that everything is about, on the axis) and $\Omega$ when it exerts force $F$ and torque $T$ on the
-//! fluid, where
+//! A body of revolution with axis $d = e_z$, in a fluid of viscosity $\mu$ at rest, moves with $U$
+//! (of the point that everything is about, on the axis) and $\Omega$ when it exerts force $F$ and
+//! torque $T$ on the fluid, where
 //!
 //! $$ \begin{pmatrix} F \\\\ T \end{pmatrix}
 //!    = \mu \begin{pmatrix} A & \tilde B \\\\ B & C \end{pmatrix}
@@ -11,16 +11,16 @@
 //!    = \frac{1}{\mu} \begin{pmatrix} a & \tilde b \\\\ b & c \end{pmatrix}
 //!      \begin{pmatrix} F \\\\ T \end{pmatrix} . $$
 //!
-//! Both matrices are symmetric, and by symmetry about the axis (Kim & Karrila 1991, sections 5.2 and 5.3;
-//! their force is that of the fluid on the body and their velocity that of the fluid past it, which is the
-//! same equation)
+//! Both matrices are symmetric, and by symmetry about the axis (Kim & Karrila 1991, sections 5.2
+//! and 5.3; their force is that of the fluid on the body and their velocity that of the fluid past
+//! it, which is the same equation)
 //!
 //! $$ A = X^A dd + Y^A (1 - dd), \quad B_{ij} = Y^B \epsilon_{ijk} d_k, \quad
 //!    \tilde B = B^\mathsf{T}, \quad C = X^C dd + Y^C (1 - dd) , $$
 //!
-//! so that $T = \mu Y^B\\, U \times d$ in a translation across the axis; likewise $a$, $b$, $c$ with
-//! $x^a$, $y^a$, $y^b$, $x^c$, $y^c$. The functions are not made dimensionless: a sphere of radius $R$ has
-//! $X^A = 6\pi R$ and $X^C = 8\pi R^3$.
+//! so that $T = \mu Y^B\\, U \times d$ in a translation across the axis; likewise $a$, $b$, $c$
+//! with $x^a$, $y^a$, $y^b$, $x^c$, $y^c$. The functions are not made dimensionless: a sphere of
+//! radius $R$ has $X^A = 6\pi R$ and $X^C = 8\pi R^3$.
 
 use bodies_of_revolution::{RigidMotion, Wrench};
 use nalgebra::{Matrix3, Matrix6, Vector3};
@@ -29,9 +29,9 @@ use super::dirichlet::DirichletSolver;
 use super::mobility::MobilitySolver;
 use super::surface::SurfaceModes;
 
-/// The five scalar functions of a matrix: $X^A, Y^A, Y^B, X^C, Y^C$ of a resistance (length, length,
-/// length², length³, length³), or $x^a, y^a, y^b, x^c, y^c$ of a mobility (1/length, 1/length, 1/length²,
-/// 1/length³, 1/length³).
+/// The five scalar functions of a matrix: $X^A, Y^A, Y^B, X^C, Y^C$ of a resistance (length,
+/// length, length², length³, length³), or $x^a, y^a, y^b, x^c, y^c$ of a mobility (1/length,
+/// 1/length, 1/length², 1/length³, 1/length³).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScalarFunctions {
     /// Translation along the axis.
@@ -84,8 +84,9 @@ impl ScalarFunctions {
 impl ResistanceMatrix {
     /// Solves for the four different rigid motions at once.
     ///
-    /// Translations and rotations along the axis are in the two families of mode 0; one across the axis
-    /// in one family of mode 1, a rotation about the same line in the other. So their answers do not mix.
+    /// Translations and rotations along the axis are in the two families of mode 0; one across the
+    /// axis in one family of mode 1, a rotation about the same line in the other. So their answers
+    /// do not mix.
     pub(crate) fn solve(solver: &DirichletSolver) -> (Self, SurfaceModes) {
         let size = solver.discretization().size();
         let unit = Vector3::new(1.0, 0.0, 1.0);
@@ -103,15 +104,16 @@ impl ResistanceMatrix {
         ScalarFunctions::of(&self.0)
     }
 
-    /// The centre of hydrodynamic reaction on the axis, $-Y^B/Y^A$ above the origin: about it rotations
-    /// exert no force (Happel & Brenner 1965, section 5.4). A body of revolution's centre of mobility is
-    /// the same point.
+    /// The centre of hydrodynamic reaction on the axis, $-Y^B/Y^A$ above the origin: about it
+    /// rotations exert no force (Happel & Brenner 1965, section 5.4). A body of revolution's centre
+    /// of mobility is the same point.
     pub fn center_of_reaction(&self) -> Vector3<f64> {
         let functions = self.scalar_functions();
         Vector3::new(0.0, 0.0, -functions.yb / functions.ya)
     }
 
-    /// The matrix about another point, `point` from the present one: torque about it, velocity of the body there.
+    /// The matrix about another point, `point` from the present one: torque about it, velocity of
+    /// the body there.
     pub fn about(&self, point: Vector3<f64>) -> Self {
         let shift = blocks(
             [Matrix3::identity(), cross(point)],
@@ -142,7 +144,8 @@ impl MobilityMatrix {
         ScalarFunctions::of(&self.0)
     }
 
-    /// The matrix about another point, `point` from the present one: torque about it, velocity of the body there.
+    /// The matrix about another point, `point` from the present one: torque about it, velocity of
+    /// the body there.
     pub fn about(&self, point: Vector3<f64>) -> Self {
         let shift = blocks(
             [Matrix3::identity(), -cross(point)],
@@ -152,7 +155,8 @@ impl MobilityMatrix {
     }
 }
 
-/// The matrix of a body of revolution that maps $e_x + e_z$ and $(e_x + e_z)/s$ with `scale` $s$ to `first` and `second`.
+/// The matrix of a body of revolution that maps $e_x + e_z$ and $(e_x + e_z)/s$ with `scale` $s$ to
+/// `first` and `second`.
 fn assembled([first, second]: [Vector3<f64>; 2], scale: f64) -> Matrix6<f64> {
     let turned =
         |across: f64, along: f64| Matrix3::from_diagonal(&Vector3::new(across, across, along));

@@ -153,7 +153,8 @@ impl Modes {
         &self.fourier
     }
 
-    /// The toroidal functions of a register, for one degree beyond the last mode, and the factor they are yet to be multiplied by.
+    /// The toroidal functions of a register, for one degree beyond the last mode, and the factor
+    /// they are yet to be multiplied by.
     #[inline(always)]
     pub(super) fn ladder<'w, S: Simd>(
         &self,

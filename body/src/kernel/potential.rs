@@ -46,8 +46,8 @@ impl Columns {
         }
     }
 
-    /// The column of ring number `k` of the workspace's `order`: the others begin after the near ones'
-    /// last register.
+    /// The column of ring number `k` of the workspace's `order`: the others begin after the near
+    /// ones' last register.
     pub fn place(&self, k: usize) -> usize {
         if k < self.near {
             k
@@ -57,7 +57,8 @@ impl Columns {
     }
 }
 
-/// Modes of the fields on a ring: field `i` of family `f` of mode `n` is number `(2 n + f) FIELDS + i`.
+/// Modes of the fields on a ring: field `i` of family `f` of mode `n` is number
+/// `(2 n + f) FIELDS + i`.
 #[derive(Debug, Default)]
 pub(crate) struct RingFields {
     /// Each field's partial sums, one for each lane of a register.

@@ -1,14 +1,16 @@
 //! The fields of both layers at a ring close to the surface, all modes at once.
 //!
-//! The azimuth is done exactly, by the modal kernels; along the curve the panels are cut towards the ring
-//! ([near rules](super::near)) and the densities interpolated there. Pressure and gradient come from derivatives of the double layer's
-//! density, so that nothing worse than $1/|\bar x|^2$ is integrated and no digits are lost however close the ring is
-//! (`kernel::close`).
+//! The azimuth is done exactly, by the modal kernels; along the curve the panels are cut towards
+//! the ring ([near rules](super::near)) and the densities interpolated there. Pressure and gradient
+//! come from derivatives of the double layer's density, so that nothing worse than $1/|\bar x|^2$
+//! is integrated and no digits are lost however close the ring is (`kernel::close`).
 //!
-//! The integration by parts leaves the density itself on the circles where panels end. Close by, those between two panels
-//! are left out: the density is continuous, and what its approximation jumps by would be magnified by the closeness.
-//! Everywhere else they are kept, as sources on rings: a panel then acts by its density and not by its derivatives, which are
-//! less accurate, and the other panels may be summed directly.
+//! The integration by parts leaves boundary terms, the density itself on the circles where panels
+//! end. On circles close to the target that lie between two panels they are left out: those of the
+//! two panels cancel, since the density is continuous, and the small jump of its approximation
+//! would be magnified by the closeness. On all other circles they are kept, as sources on rings: a
+//! panel's field then depends on its density and not on the derivatives, which are less accurate,
+//! and the other panels may be summed directly.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
@@ -18,7 +20,8 @@ use super::densities::Densities;
 use super::discretization::{Discretization, Node};
 use super::near::{NearNodes, NearRules, Sight, Stretch, offsets, reference};
 use crate::kernel::{
-    DENSITIES, Modes, Potential, RingDensities, RingFields, SourceRings, TargetRing, Workspace,
+    Columns, DENSITIES, Modes, Potential, RingDensities, RingFields, SourceRings, TargetRing,
+    Workspace,
 };
 use bodies_of_revolution::{Meridian, Topology};
 
@@ -34,7 +37,7 @@ pub(super) struct CloseFlow {
 pub(super) struct Buffers {
     near: NearNodes,
     sources: SourceRings,
-    /// The ends of panels that keep their circle.
+    /// The ends of panels whose boundary term is kept.
     rings: Vec<(usize, End)>,
     gathered: Vec<f64>,
     /// Densities at the few nodes of a stretch.
@@ -56,7 +59,8 @@ impl CloseFlow {
         })
     }
 
-    /// All modes of the fields of the densities on `panels`: field `i` of family `f` of mode `n` is number `(2 n + f) FIELDS + i`.
+    /// All modes of the fields of the densities on `panels`: field `i` of family `f` of mode `n` is
+    /// number `(2 n + f) FIELDS + i`.
     pub fn fields<const K: usize, const FIELDS: usize>(
         &self,
         discretization: &Discretization,
@@ -74,7 +78,7 @@ impl CloseFlow {
         buffers.fields.reset(2 * densities.modes() * FIELDS);
         buffers.rings.clear();
         let count = discretization.panels().len();
-        // How near to a panel's end its circle is left out.
+        // A boundary term is left out if the target is nearer than this to the panel's end.
         let order = discretization.order() as f64;
         let reach = |panel: usize| discretization.arc_length(panel) / order;
         for &panel in panels {
@@ -126,7 +130,8 @@ impl CloseFlow {
         Ok(buffers.fields.values().collect())
     }
 
-    /// Adds the fields of the near nodes, whose densities are interpolated from `values` (values at some nodes, column after column).
+    /// Adds the fields of the near nodes, whose densities are interpolated from `values` (values at
+    /// some nodes, column after column).
     fn add_nodes<const K: usize, const FIELDS: usize>(
         &self,
         potential: &impl Potential<K, FIELDS>,
@@ -154,13 +159,13 @@ impl CloseFlow {
         target: TargetRing,
         buffers: &mut Buffers,
     ) {
-        self.engine.add_fields(
+        buffers.fields.add(
+            &self.engine,
             potential,
             target,
             &buffers.sources,
             &buffers.densities,
             &mut buffers.workspace,
-            &mut buffers.fields,
         );
     }
 }
@@ -199,21 +204,23 @@ enum End {
 }
 
 impl Buffers {
-    /// The densities at the sources, which begin with near node `first`, in the order of the workspace.
+    /// The densities at the sources, which begin with near node `first`, in the order of the
+    /// workspace.
     fn interpolate(&mut self, values: MatRef<'_, f64>, first: usize) {
         let (order, rows) = (values.nrows(), values.ncols());
-        let columns = &self.workspace.order;
-        self.densities.resize(rows, self.workspace.columns());
+        let sources = &self.workspace.order;
+        let columns = Columns::of(&self.workspace);
+        self.densities.resize(rows, columns);
         let stride = self.densities.stride;
         // Near and far columns stand apart.
-        let near = self.workspace.columns().near;
-        for run in [0..near, near..columns.len()] {
+        let near = columns.near;
+        for run in [0..near, near..sources.len()] {
             if run.is_empty() {
                 continue;
             }
-            let (place, length) = (self.workspace.column(run.start), run.len());
+            let (place, length) = (columns.place(run.start), run.len());
             self.gathered.clear();
-            for &source in &columns[run] {
+            for &source in &sources[run] {
                 let weight = self.near.nodes[first + source].weight;
                 let row = &self.near.interpolation[(first + source) * order..][..order];
                 self.gathered.extend(row.iter().map(|l| l * weight));
@@ -253,25 +260,26 @@ impl Buffers {
             };
             let chord = curve.chord(sight.s, ds);
             let separation = [sight.gap.r - chord.r, sight.gap.z - chord.z];
-            // The normal does not matter to what circles carry.
+            // The kernels of the boundary terms do not depend on the normal.
             self.sources
                 .push(sight.foot.r + chord.r, separation, [0.0; 2]);
         }
     }
 
-    /// What the circles carry: $y^\theta = \partial_\ell\sigma$ of a density that begins and ends there.
+    /// The boundary terms on the circles: $y^\theta = \partial_\ell\sigma$ of a density that jumps
+    /// to zero there.
     fn interpolate_rings(
         &mut self,
         discretization: &Discretization,
         densities: &Densities,
     ) -> Result<(), QuadratureError> {
         let order = discretization.order();
-        self.densities
-            .resize(densities.rows(), self.workspace.columns());
+        let columns = Columns::of(&self.workspace);
+        self.densities.resize(densities.rows(), columns);
         self.densities.values.fill(0.0);
         self.gathered.resize(order, 0.0);
         for (place, &source) in self.workspace.order.iter().enumerate() {
-            let column = self.workspace.column(place);
+            let column = columns.place(place);
             let (panel, end) = self.rings[source];
             let (t, sign) = match end {
                 End::Start => (-1.0, 1.0),

@@ -7,13 +7,15 @@ use super::discretization::Discretization;
 use super::layers::Layers;
 use crate::kernel::DENSITIES;
 
-/// Modes of the densities that the fields of [`kernel::close`](crate::kernel) are made of: $\sigma$, $\varrho$,
-/// $y^\theta = \partial_\ell \sigma$ and $y^t = -r^{-1} \partial_\theta \sigma$, three cylindrical components each.
+/// Modes of the densities that the fields of [`kernel::close`](crate::kernel) are made of:
+/// $\sigma$, $\varrho$, $y^\theta = \partial_\ell \sigma$ and
+/// $y^t = -r^{-1} \partial_\theta \sigma$, three cylindrical components each.
 #[derive(Debug)]
 pub(super) struct Densities {
     modes: usize,
     nodes: usize,
-    /// Density `j` of family `f` of mode `n` at node `k` is at `((2 n + f) DENSITIES + j) nodes + k`.
+    /// Density `j` of family `f` of mode `n` at node `k` is at
+    /// `((2 n + f) DENSITIES + j) nodes + k`.
     values: Vec<f64>,
 }
 
@@ -68,7 +70,8 @@ impl Densities {
         &self.values[row * self.nodes..][..self.nodes]
     }
 
-    /// Logarithm of each mode's largest coefficient of $\sigma$ and $\varrho$ relative to the largest of all.
+    /// Logarithm of each mode's largest coefficient of $\sigma$ and $\varrho$ relative to the
+    /// largest of all.
     pub fn mode_decay(&self) -> Vec<f64> {
         let largest = |n: usize| {
             self.layer_rows(n..n + 1)

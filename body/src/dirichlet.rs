@@ -2,12 +2,15 @@
 //!
 //! | problem | equation | flow |
 //! |---|---|---|
-//! | exterior, combined field | $(\frac12 + D + \eta S)\sigma = f$ | $u = D[\sigma] + \eta S[\sigma]$ |
-//! | exterior, single layer | $(S + \nu\langle\nu, \cdot\rangle)\sigma = f$ | $u = S[\sigma]$ |
-//! | interior, completed double layer | $(-\frac12 + D + \nu\langle\nu, \cdot\rangle)\sigma = f$ | $u = D[\sigma]$ |
+//! | exterior, combined field | $(\frac12 + D + \eta S)\sigma = f$ | $u = D\sigma + \eta S\sigma$ |
+//! | exterior, single layer | $(S + N)\sigma = f$ | $u = S\sigma$ |
+//! | interior, completed double layer | $(-\frac12 + D + N)\sigma = f$ | $u = D\sigma$ |
 //!
-//! with $\langle\nu, \sigma\rangle$ the mean of the normal component over the surface. The normal spans the null space of $S$ and is
-//! what $-\frac12 + D$ cannot reach; the added term vanishes when $f$ has no net flux, as it must for the single layer and in the interior.
+//! with $N \sigma = \nu \langle\nu, \sigma\rangle$, where $\langle\nu, \sigma\rangle$ is the mean
+//! of the normal component over the surface. The normal spans the null space of $S$ and the
+//! complement of the range of $-\frac12 + D$, so $N$ makes the equations uniquely solvable.
+//! $N \sigma$ vanishes when $f$ has no net flux, as it must have none for the single layer and in
+//! the interior.
 
 use panel_quadrature::QuadratureError;
 
@@ -149,8 +152,8 @@ impl DirichletSolver {
         Flow::new(&self.discretization, layers).limit_from(side)
     }
 
-    /// Force and torque (about the origin) that the body exerts on the fluid, for viscosity 1: of the single layer alone, since
-    /// a double layer exerts none.
+    /// Force and torque (about the origin) that the body exerts on the fluid, for viscosity 1: of
+    /// the single layer alone, since a double layer exerts none.
     pub fn wrench(&self, density: &SurfaceModes) -> Wrench {
         let Wrench { force, torque } = density.wrench(&self.discretization);
         Wrench {
@@ -199,8 +202,9 @@ fn assemble(
 }
 
 /// The weight $\eta$ that makes the single layer as strong on translations as $\frac12$: with
-/// $\lambda = \frac{1}{6\pi\lvert\Gamma\rvert} \int\\!\int \frac{d\Gamma\\, d\Gamma'}{\lvert x - x'\rvert}$, the mean of $\langle e, S e\rangle$ over directions $e$, it is $1/2\lambda$
-/// ($3/4a$ for a sphere of radius $a$).
+/// $\lambda = \frac{1}{6\pi A} \int\\!\int \frac{d\Gamma\\, d\Gamma'}{\lvert x - x'\rvert}$,
+/// where $A$ is the area, it is $1/2\lambda$ ($3/4a$ for a sphere of radius $a$). This $\lambda$ is
+/// the mean of $\langle e, S e\rangle$ over directions $e$.
 fn natural_weight(discretization: &Discretization) -> f64 {
     let nodes = discretization.nodes();
     let mut energy = 0.0;
@@ -208,7 +212,8 @@ fn natural_weight(discretization: &Discretization) -> f64 {
     for x in nodes {
         area += x.weight;
         for y in nodes {
-            // A node's own share, from the mean distance within its stretch of curve: this is a weight, not a result.
+            // The distance of a node from itself is replaced by the mean distance within its
+            // stretch of curve. That is rough, but enough for a weight.
             let rho = (x.r - y.r).hypot(x.z - y.z).max(0.2 * x.weight / x.r);
             let big_r = 2.0 * x.r * y.r;
             let (q0, _) = toroidal::start(rho * rho / big_r);

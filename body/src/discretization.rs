@@ -30,7 +30,8 @@ pub struct Node {
     pub z: f64,
     /// Outward unit normal, radial and axial component.
     pub normal: [f64; 2],
-    /// Quadrature weight per unit azimuth, $w\\, r\\, \lvert d\gamma/ds\rvert$: the surface element is this times $d\theta$.
+    /// Quadrature weight per unit azimuth, $w\\, r\\, \lvert d\gamma/ds\rvert$: the surface element
+    /// is this times $d\theta$.
     pub weight: f64,
 }
 
@@ -148,7 +149,8 @@ impl Discretization {
         self.ends[panel]
     }
 
-    /// By how much the normal turns from a panel's first node to its last, in radians, all bends counting.
+    /// By how much the normal turns from a panel's first node to its last, in radians, all bends
+    /// counting.
     pub fn turning(&self, panel: usize) -> f64 {
         self.turnings[panel]
     }

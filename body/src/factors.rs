@@ -1,4 +1,5 @@
-//! Factors of the modal matrices: they belong to the shape, and serve every body of that shape and every right-hand side.
+//! Factors of the modal matrices: they belong to the shape, and serve every body of that shape and
+//! every right-hand side.
 
 use std::time::Instant;
 
@@ -148,7 +149,8 @@ impl ModalFactors {
         self.unknowns * (2 * self.count() - 1)
     }
 
-    /// The density whose potential has the boundary values `data`; modes of `data` beyond the factors' are left out.
+    /// The density whose potential has the boundary values `data`; modes of `data` beyond the
+    /// factors' are left out.
     pub fn solve(&self, data: &SurfaceModes) -> SurfaceModes {
         let nodes = data.nodes();
         let mut density = SurfaceModes::zero(self.count() - 1, nodes);
@@ -175,7 +177,8 @@ impl ModalFactors {
         density
     }
 
-    /// Solves in place for columns of mode `n` that are scaled by the roots of the weights, any number of them.
+    /// Solves in place for columns of mode `n` that are scaled by the roots of the weights, any
+    /// number of them.
     pub fn solve_scaled(&self, n: usize, columns: MatMut<'_, f64>) {
         let size = self.unknowns * self.unknowns;
         // The factors are the transposed matrix's.

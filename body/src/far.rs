@@ -1,7 +1,8 @@
 //! The flow of both layers away from the surface: direct sums over points.
 //!
-//! With the trapezoidal rule in the azimuth and Gauss–Legendre panels along the curve both converge exponentially in the number of
-//! points per distance; where they do not resolve a panel's action, the [close](super::close) fields take over.
+//! With the trapezoidal rule in the azimuth and Gauss–Legendre panels along the curve both
+//! converge exponentially in the number of points per distance; where they do not resolve a panel's action,
+//! the [close](super::close) fields take over.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -20,7 +21,8 @@ use super::surface::azimuths;
 use crate::kernel::{DENSITIES, SurfacePoint, SurfacePoints};
 use bodies_of_revolution::Meridian;
 
-/// Natural logarithm of what the rules' errors exceed the bare powers by: the kernels are large near the surface.
+/// Natural logarithm of the factor in front of the powers in the rules' error bounds: it is large
+/// because the kernels are large near the surface.
 const MARGIN: f64 = 7.0;
 
 /// The densities on points of the surface.
@@ -31,8 +33,8 @@ pub(super) struct FarFlow {
     per_panel: usize,
     pub azimuths: usize,
     order: usize,
-    /// Logarithm of each mode's largest coefficient relative to the largest of all, and panel after panel the same of its Legendre
-    /// coefficients along the curve.
+    /// Logarithm of each mode's largest coefficient relative to the largest of all, and panel after
+    /// panel the same of its Legendre coefficients along the curve.
     mode_decay: Vec<f64>,
     panel_decay: Vec<f64>,
 }
@@ -81,8 +83,11 @@ impl FarFlow {
 }
 
 impl Separation {
-    /// The separation of points, so many nodes on each panel and azimuths, for an error below `tolerance` relative to densities whose modes, and whose Legendre coefficients on each panel, decay like
-    /// that: logarithms, relative to the largest.
+    /// The separation of points on `order` nodes of each panel and on `azimuths`, for an error
+    /// below `tolerance` relative to the density.
+    ///
+    /// `mode_decay` and `panel_decay` are logarithms of the density's modes, and of its Legendre
+    /// coefficients on each panel, relative to the largest.
     fn new<'d>(
         tolerance: f64,
         [order, azimuths]: [usize; 2],
@@ -90,11 +95,12 @@ impl Separation {
         panel_decay: impl Iterator<Item = &'d [f64]>,
     ) -> Self {
         let digits = MARGIN - tolerance.ln();
-        // Mode m of the density meets mode count - m of the kernel.
+        // The rule aliases mode m of the density with mode count - m of the kernel.
         let xi = (mode_decay.iter().enumerate())
             .map(|(m, decay)| (decay + digits) / (azimuths - m) as f64)
             .fold(0.0, f64::max);
-        // Degree k of the density leaves 2 order - k to the kernel.
+        // The rule is exact up to degree 2 order: degree k of the density leaves 2 order - k to the
+        // kernel.
         let log_rho = |decay: &[f64]| {
             (decay.iter().enumerate())
                 .map(|(k, x)| (x + digits) / (2 * order - k) as f64)
@@ -106,8 +112,10 @@ impl Separation {
         }
     }
 
-    /// The same for any density that so many modes and the nodes of the panels, perhaps fewer than the points, just resolve to the tolerance. The modes of rigid motions and
-    /// linear flows may all be as large as the largest.
+    /// The same for any density that is resolved to the tolerance by modes up to `n_max` and the
+    /// nodes of `discretization`, which may be fewer than the points: its coefficients are taken to
+    /// fall steadily to the tolerance at the last one. The modes of rigid motions and linear flows
+    /// may all be as large as the largest.
     pub fn of_resolved(
         discretization: &Discretization,
         n_max: usize,
@@ -132,12 +140,14 @@ impl Separation {
         )
     }
 
-    /// The largest distance from a sphere of the given radius about the body, which it fits in, at which anything is not kept.
+    /// The largest distance from a sphere of the given radius, which the body fits in, at which a
+    /// target may be too close for the points.
     pub fn reach(&self, discretization: &Discretization, radius: f64) -> f64 {
         // On rings: d^2 < 2 h r (r + d).
         let hr = self.h * radius;
         let around = hr + (hr * hr + 2.0 * hr * radius).sqrt();
-        // On panels: the sum of the distances from both ends is at most this; a bend only makes the ellipse narrower.
+        // On panels: the sum of the distances from both ends is at most this; a bend only makes the
+        // ellipse narrower.
         let along = self.rho.iter().enumerate().map(|(panel, rho)| {
             let rho = rho.powf(bend(discretization, panel));
             0.25 * (rho + 1.0 / rho) * discretization.arc_length(panel)
@@ -201,7 +211,8 @@ fn sample(discretization: &Discretization, densities: &Densities, count: usize) 
     points
 }
 
-/// The complex spectrum of density `j` (of both layers) at node `k`; its inverse transform has the density as real part.
+/// The complex spectrum of density `j` (of both layers) at node `k`; its inverse transform has the
+/// density as real part.
 fn spectrum(densities: &Densities, k: usize, j: usize, ring: &mut [Complex64]) {
     ring.fill(Complex64::default());
     for (n, ring) in ring.iter_mut().enumerate().take(densities.modes()) {

@@ -1,7 +1,8 @@
-//! What a density on some panels does to a point close to them, as numbers that wait for the density.
+//! Rows of the near-field matrix: the velocity at a point close to some panels, as a linear map of
+//! the density on them.
 //!
-//! The same integrals as in [`close`](super::close), of the velocity alone: mode by mode a matrix of three by three for each node. They are worth
-//! keeping where many densities come by, as in an iteration.
+//! They are the integrals of [`close`](super::close), of the velocity alone: for each mode and node
+//! a matrix of three by three. They are stored because an iteration applies them to many densities.
 
 use bodies_of_revolution::Meridian;
 use faer::linalg::matmul::matmul;
@@ -44,13 +45,14 @@ impl Influence {
         })
     }
 
-    /// How many numbers make up the rows of a point for so many panels.
+    /// The length of the rows of a point for so many panels.
     pub fn len(&self, discretization: &Discretization, panels: usize) -> usize {
         9 * self.engine.count() * panels * discretization.order()
     }
 
-    /// The rows of a point, of $w_D D + w_S S$: entry $(i, j)$ of mode `n` for node `k` of the nodes of `panels` together is number
-    /// $(9n + 3i + j) P + k$, and acts on densities [scaled](super::surface_grid) by the roots of their weights.
+    /// The rows of a point, of $w_D D + w_S S$: entry $(i, j)$ of mode `n` for node `k` of the
+    /// nodes of `panels` together is number $(9n + 3i + j) P + k$, and acts on densities
+    /// [scaled](super::surface_grid) by the roots of their weights.
     pub fn fill(
         &self,
         discretization: &Discretization,

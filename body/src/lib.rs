@@ -1,11 +1,12 @@
 //! One body: its modal matrices and their factors, boundary problems on it, and the flow around it.
 //!
-//! Everything here is in the body's own frame: symmetry axis `z`, centre at the origin of its generating curve.
+//! Everything here is in the body's own frame: symmetry axis `z`, centre at the origin of its
+//! generating curve.
 //!
 //! | module | what |
 //! |---|---|
 //! | [`special`] | toroidal functions |
-//! | [`kernel`] | kernels of the layer potentials, in free space and mode by mode: signs and scaling |
+//! | [`kernel`] | kernels of the layer potentials in space and mode by mode: signs, scaling |
 //! | [`dirichlet`] | Dirichlet problems: equations and solver |
 //! | [`mobility`] | bodies that are free to move |
 //! | [`discretization`] | panels and nodes on the generating curve |
@@ -16,9 +17,11 @@
 //! | [`flow`] | velocity, pressure and stress at any point |
 //! | [`linear_flow`] | undisturbed flows |
 //! | [`resolution`] | how finely a body is discretised |
-//! | [`resistance`] | resistance and mobility matrices |
+//! | [`resistance`] | all resistance and mobility functions, to a tolerance |
+//! | `rigid_matrices` | resistance and mobility matrices and their scalar functions |
 //! | `rigid` | rigid motions of the surface, force and torque of a density |
 //! | [`shell`] | the projection onto rigid motions |
+//! | [`strain`] | resistance and mobility functions of strain, intrinsic viscosity |
 //! | [`stresslet`] | the stresslet |
 //! | [`progress`] | how a long computation tells where it is |
 
@@ -45,9 +48,11 @@ pub mod refinement;
 pub mod resistance;
 pub mod resolution;
 mod rigid;
+mod rigid_matrices;
 pub mod shell;
 pub mod special;
 mod storage;
+pub mod strain;
 pub mod stresslet;
 pub mod surface;
 pub mod surface_grid;

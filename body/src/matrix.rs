@@ -1,13 +1,18 @@
 //! Modal Nyström matrices of a layer potential on a surface.
 //!
-//! A real field is the sum over modes $n$ of two families, $(\alpha \cos n\theta, \beta \sin n\theta, \gamma \cos n\theta)$ and
-//! $(\alpha \sin n\theta, -\beta \cos n\theta, \gamma \sin n\theta)$ in the cylindrical components; the second is the first turned about the axis.
-//! A rotationally invariant operator maps each family to itself by the same real matrix: with the kernel's modes $K_{ij}(n)$
+//! A real field is the sum over modes $n$ of two families,
+//! $(\alpha \cos n\theta, \beta \sin n\theta, \gamma \cos n\theta)$ and
+//! $(\alpha \sin n\theta, -\beta \cos n\theta, \gamma \sin n\theta)$ in the cylindrical components;
+//! the second is the first turned about the axis. A rotationally invariant operator maps each
+//! family to itself by the same real matrix: with the kernel's modes $K_{ij}(n)$
 //!
-//! $$ \begin{pmatrix} K_{rr} & -K_{r\theta} & K_{rz} \\\\ K_{\theta r} & K_{\theta\theta} & K_{\theta z} \\\\ K_{zr} & -K_{z\theta} & K_{zz} \end{pmatrix} . $$
+//! $$ \begin{pmatrix} K_{rr} & -K_{r\theta} & K_{rz} \\\\
+//!    K_{\theta r} & K_{\theta\theta} & K_{\theta z} \\\\
+//!    K_{zr} & -K_{z\theta} & K_{zz} \end{pmatrix} . $$
 //!
-//! Only $n \ge 0$ is needed, in real arithmetic. Rows and columns carry the square roots of the quadrature weights,
-//! $\sqrt{w_i} K_{ij} \sqrt{w_j}$, so that the matrix acts on $L^2$ of the surface and its condition number is the operator's.
+//! Only $n \ge 0$ is needed, in real arithmetic. Rows and columns carry the square roots of the
+//! quadrature weights, $\sqrt{w_i} K_{ij} \sqrt{w_j}$, so that the matrix acts on $L^2$ of the
+//! surface and its condition number is the operator's.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
@@ -24,7 +29,8 @@ use crate::kernel::{
     TargetRing, Workspace,
 };
 
-/// A layer potential on the surface, for viscosity 1 and as a principal value; kernels and signs as in [`kernel`](crate::kernel).
+/// A layer potential on the surface, for viscosity 1 and as a principal value; kernels and signs as
+/// in [`kernel`](crate::kernel).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LayerPotential {
@@ -96,9 +102,9 @@ impl ModalMatrices {
         }
     }
 
-    /// The matrices of the velocity on the surface, taken from outside, of the layers $w_D D[\sigma] + w_S S[\sigma]$
-    /// of one density: of $\tfrac12 + D + w_S S$, or of $S$ for the [single layer alone](LayerWeights::SINGLE); for
-    /// modes up to `n_max`.
+    /// The matrices of the velocity on the surface, taken from outside, of the layers
+    /// $w_D D[\sigma] + w_S S[\sigma]$ of one density: of $\tfrac12 + D + w_S S$, or of $S$ for the
+    /// [single layer alone](LayerWeights::SINGLE); for modes up to `n_max`.
     ///
     /// # Errors
     /// If a quadrature rule is missing.
@@ -115,8 +121,8 @@ impl ModalMatrices {
         Self::assemble(discretization, &kernel, 0.5, n_max, &|| ())
     }
 
-    /// The matrices of `identity` plus the layer potential of `kernel` (principal value), for modes up to `n_max`;
-    /// `done` is called after each target node.
+    /// The matrices of `identity` plus the layer potential of `kernel` (principal value), for modes
+    /// up to `n_max`; `done` is called after each target node.
     pub(crate) fn assemble(
         discretization: &Discretization,
         kernel: &impl Kernel<9>,
@@ -170,7 +176,8 @@ impl ModalMatrices {
         targets
     }
 
-    /// The operator applied to a density: its values at the nodes, in the modes that matrices and density share.
+    /// The operator applied to a density: its values at the nodes, in the modes that matrices and
+    /// density share.
     pub fn apply(&self, discretization: &Discretization, density: &SurfaceModes) -> SurfaceModes {
         let nodes = discretization.nodes();
         let roots: Vec<f64> = nodes.iter().map(|node| node.weight.sqrt()).collect();
@@ -195,7 +202,8 @@ impl ModalMatrices {
         values
     }
 
-    /// The operator of mode `n` on columns that are scaled by the roots of the weights, any number of them.
+    /// The operator of mode `n` on columns that are scaled by the roots of the weights, any number
+    /// of them.
     pub fn apply_scaled(&self, n: usize, columns: MatRef<'_, f64>, out: MatMut<'_, f64>) {
         matmul(
             out,
@@ -207,8 +215,9 @@ impl ModalMatrices {
         );
     }
 
-    /// Adds to mode `n` the orthogonal projection, in $L^2$ of the surface, onto a field of that mode: a matrix of rank one. `field`
-    /// gives the field's components (radial, azimuthal, axial) at a node.
+    /// Adds to mode `n` the orthogonal projection, in $L^2$ of the surface, onto a field of that
+    /// mode: a matrix of rank one. `field` gives the field's components (radial, azimuthal, axial)
+    /// at a node.
     pub fn add_projection(
         &mut self,
         discretization: &Discretization,

@@ -1,13 +1,15 @@
 //! Bodies that are free to move: force and torque are given, the rigid motion is wanted.
 //!
-//! The velocity on the surface is $U + \Omega \times x + u_s$ with unknown $U$, $\Omega$ and given slip $u_s$, in an undisturbed flow
-//! $u_\infty$. A single layer $\varrho$ that is itself a rigid motion carries force and torque (see [`shell`](super::shell)), and with
-//! the projection $P$ onto the rigid motions the density of the completed double layer solves (Power & Miranda 1987; Kim & Karrila
-//! 1991, chapter 17)
+//! The velocity on the surface is $U + \Omega \times x + u_s$ with unknown $U$, $\Omega$ and given
+//! slip $u_s$, in an undisturbed flow $u_\infty$. A single layer $\varrho$ that is itself a rigid
+//! motion carries force and torque (see [`shell`](super::shell)), and with the projection $P$ onto
+//! the rigid motions the density of the completed double layer solves (Power & Miranda 1987; Kim &
+//! Karrila 1991, chapter 17)
 //!
-//! $$ (\tfrac12 + D + P)\\, \sigma = u_s - u_\infty - S[\varrho], \qquad u = u_\infty + D[\sigma] + S[\varrho], \qquad U + \Omega \times x = -P\sigma . $$
+//! $$ (\tfrac12 + D + P)\\, \sigma = u_s - u_\infty - S[\varrho], \qquad
+//!    u = u_\infty + D[\sigma] + S[\varrho], \qquad U + \Omega \times x = -P\sigma . $$
 //!
-//! $\frac12 + D$ vanishes on the rigid motions; $P$ completes it, and reads off the motion.
+//! $\frac12 + D$ vanishes on the rigid motions; $P$ makes it invertible, and gives the motion.
 
 use panel_quadrature::QuadratureError;
 
@@ -90,9 +92,10 @@ impl MobilitySolver {
         self.seconds
     }
 
-    /// The rigid motion about the origin and the layers of the disturbance, for viscosity 1: of a body that exerts `wrench` on the
-    /// fluid (about the origin; the same is exerted on the body from outside) and whose slip less the undisturbed flow on the surface
-    /// is `data`, $u_s - u_\infty$.
+    /// The rigid motion about the origin and the layers of the disturbance, for viscosity 1: of a
+    /// body that exerts `wrench` on the fluid (about the origin; the same is exerted on the body
+    /// from outside) and whose slip less the undisturbed flow on the surface is `data`,
+    /// $u_s - u_\infty$.
     pub fn solve(&self, wrench: Wrench, data: SurfaceModes) -> (RigidMotion, Layers) {
         let discretization = &self.discretization;
         let single = SurfaceModes::of_motion(discretization, &self.shell.motion(wrench));
@@ -102,15 +105,16 @@ impl MobilitySolver {
         (motion, Layers { double, single })
     }
 
-    /// The rigid motion (about the origin) of a body under force and torque (about the origin), in a fluid of viscosity 1 at rest.
+    /// The rigid motion (about the origin) of a body under force and torque (about the origin), in
+    /// a fluid of viscosity 1 at rest.
     pub fn mobility(&self, wrench: Wrench) -> RigidMotion {
         let at_rest = SurfaceModes::zero(0, self.discretization.nodes().len());
         self.solve(wrench, at_rest).0
     }
 }
 
-/// Adds $P$: about the centroid the six rigid motions are orthogonal to each other, two in mode 0 and, in each of its families, two
-/// in mode 1.
+/// Adds $P$: about the centroid the six rigid motions are orthogonal to each other, two in mode 0
+/// and, in each of its families, two in mode 1.
 fn add_rigid_projection(
     matrices: &mut ModalMatrices,
     discretization: &Discretization,

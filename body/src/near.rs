@@ -1,16 +1,19 @@
 //! Which quadrature resolves what a panel does to a target, on the curve or off it.
 //!
-//! The modal kernels are singular at the target and at its mirror image $(-r, z)$ across the axis: as functions of the source's
-//! parameter they are analytic only inside an ellipse that keeps clear of both (Bernstein). A Gauss rule of `p` nodes is
-//! good to $\varrho^{-2p}$, where $\varrho + 1/\varrho$ is the sum of the singularity's distances from the panel's ends, in half panel
-//! lengths. So a panel is taken
+//! The modal kernels are singular at the target and at its mirror image $(-r, z)$ across the axis:
+//! as functions of the source's parameter they are analytic only inside an ellipse that keeps clear
+//! of both (Bernstein). A Gauss rule of `p` nodes is good to $\varrho^{-2p}$, where
+//! $\varrho + 1/\varrho$ is the sum of the singularity's distances from the panel's ends, in half
+//! panel lengths. So a panel is taken
 //!
 //! - as it is, where $\varrho$ is large enough;
-//! - with a Kolm–Rokhlin rule, if it is the target's own or one as long next to it on the same smooth piece of the curve, and the
-//!   mirror image is out of the way and the highest mode does not decay too fast;
-//! - otherwise cut towards the singularity, in parts nearly four times as long from one to the next, until every part is resolved by a
-//!   Gauss rule, but for the parts that end at the target, which have a rule for a logarithm at that end. Off the curve at a distance `d`
-//!   that makes a number of parts that grows with $\log(1/d)$.
+//! - with a Kolm–Rokhlin rule, if it is the target's own or one as long next to it on the same
+//!   smooth piece of the curve, the mirror image is not close, and the highest mode does not decay
+//!   too fast;
+//! - otherwise cut towards the singularity, each part nearly four times as long as the one before,
+//!   until every part is resolved by a Gauss rule. Parts that end at the target have a rule for a
+//!   logarithm at that end instead. Off the curve at a distance `d` the number of parts grows with
+//!   $\log(1/d)$.
 
 use panel_quadrature::kolm_rokhlin::{KolmRokhlin, Side};
 use panel_quadrature::{GaussLegendre, LogEndpoint, PanelBasis, QuadratureError};
@@ -30,15 +33,19 @@ fn far_enough(p: usize) -> f64 {
 const GAUSS: usize = 16;
 /// Nodes of the rule on parts that end at the target.
 const LOG_ENDPOINT: usize = 24;
-/// Longest part at a target, in decay lengths $r/n$ of the highest mode, that [`LOG_ENDPOINT`] nodes resolve.
+/// Longest part at a target, in decay lengths $r/n$ of the highest mode, that [`LOG_ENDPOINT`]
+/// nodes resolve.
 const DECAY_LENGTHS: f64 = 24.0;
-/// Longest panel for a Kolm–Rokhlin rule, in the same lengths and per node of the panel: longer ones are cut near the target.
+/// Longest panel for a Kolm–Rokhlin rule, in the same lengths and per node of the panel: longer
+/// ones are cut near the target.
 const DECAY_LENGTHS_PER_NODE: f64 = 2.5;
-/// Where a part is cut whose nearest point to the singularity is its end, as a fraction from there: what is left has
-/// $\varrho + 1/\varrho = 3.5$.
+/// Where a part is cut whose end is its point nearest to the singularity, as a fraction of the part
+/// from that end: the rest has $\varrho + 1/\varrho = 3.5$.
 const CUT: f64 = 0.27;
-/// Next to a point that is very close, as far as this fraction of half a panel, a panel's polynomials are interpolated from so many
-/// nodes first: with 8, what is lost of degree 8 is 4e-13 of its coefficient, of degree 15 1e-7 of its (which is the panel's own error).
+/// Next to a point that is very close, on a stretch as long as this fraction of half a panel, the
+/// panel's polynomials are first interpolated from so many nodes. With 8 nodes the error is 4e-13
+/// of the coefficient of degree 8, and 1e-7 of the one of degree 15, which is as small as the
+/// panel's own error.
 const INNER_REACH: f64 = 1.0 / 32.0;
 const INNER: usize = 8;
 /// Cuts after which a part is taken as it is: it is then of the size of rounding errors.
@@ -46,7 +53,8 @@ const DEEPEST: usize = 52;
 
 /// A point seen from a point of the curve close to it.
 ///
-/// Where sources are close, their differences from the point come from the gap and the chord, never from coordinates.
+/// Where sources are close, their differences from the point come from the gap and the chord, never
+/// from coordinates.
 #[derive(Clone, Copy, Debug)]
 pub struct Sight {
     /// Parameter of the curve point.
@@ -104,13 +112,15 @@ struct Part {
 pub struct Stretch<'b> {
     /// Where it is.
     pub range: [f64; 2],
-    /// Where the nodes are that densities are interpolated from: the whole panel, or the stretch itself.
+    /// Where the nodes are that densities are interpolated from: the whole panel, or the stretch
+    /// itself.
     pub domain: [f64; 2],
     /// Those nodes.
     pub basis: &'b PanelBasis,
 }
 
-/// A place on a panel: in its reference interval, and as an offset from the foot in the curve's parameter.
+/// A place on a panel: in its reference interval, and as an offset from the foot in the curve's
+/// parameter.
 #[derive(Clone, Copy, Debug)]
 struct Place {
     t: f64,
@@ -125,20 +135,24 @@ pub struct NearRules {
     inner: PanelBasis,
     log_endpoint: LogEndpoint,
     far: f64,
-    /// What the rule of [`GAUSS`] nodes resolves, and the one of [`LOG_ENDPOINT`] nodes (whose degree is half a Gauss rule's).
+    /// What the rule of [`GAUSS`] nodes resolves, and the one of [`LOG_ENDPOINT`] nodes (whose
+    /// degree is half a Gauss rule's).
     gauss_far: f64,
     log_far: f64,
     /// Longest part at a target, relative to the target's radius.
     longest: f64,
-    /// Longest panel with a Kolm–Rokhlin rule, relative to the target's radius; none where there are no such rules.
+    /// Longest panel with a Kolm–Rokhlin rule, relative to the target's radius; none where there
+    /// are no such rules.
     longest_kolm_rokhlin: f64,
 }
 
-/// What a bend takes from the logarithm of the ellipse's parameter, for each radian by which the tangent turns: on a circular arc the
-/// preimage of a point on the inner side lies on an ellipse with a logarithm smaller by 1 / (1 + 0.36 angle) at the worst.
+/// By how much a bend lowers the logarithm of the ellipse's parameter, for each radian by which the
+/// tangent turns: on a circular arc the preimage of a point on the inner side lies on an ellipse
+/// whose logarithm is smaller by 1 / (1 + 0.36 angle) at the worst.
 const BEND: f64 = 0.36;
 
-/// The parameter of the Bernstein ellipse around a panel that passes through the preimage of a point, or somewhat less.
+/// The parameter of the Bernstein ellipse around a panel that passes through the preimage of a
+/// point, or somewhat less.
 pub fn bernstein(discretization: &Discretization, point: [f64; 2], panel: usize) -> f64 {
     let distance = |from: [f64; 2]| (point[0] - from[0]).hypot(point[1] - from[1]);
     ellipse(
@@ -148,7 +162,8 @@ pub fn bernstein(discretization: &Discretization, point: [f64; 2], panel: usize)
     )
 }
 
-/// The same from the distances of the point from the two ends of a part of a curve, its length, and by how much its tangent turns.
+/// The same from the distances of the point from the two ends of a part of a curve, its length, and
+/// by how much its tangent turns.
 fn ellipse(distances: [f64; 2], length: f64, turning: f64) -> f64 {
     let sum = (distances[0] + distances[1]) / (0.5 * length);
     // rho + 1/rho = sum; on the part itself the sum is 2, less where it bends.
@@ -236,8 +251,8 @@ impl NearRules {
         self.cut(discretization, &sight, panel, &stretch, near)
     }
 
-    /// The stretches of a panel for a point off the curve, and whether each has its own few nodes: the one next to a point that is very
-    /// close does.
+    /// The stretches of a panel for a point off the curve, and whether each has its own few nodes:
+    /// the one next to a point that is very close does.
     pub fn stretches<'b>(
         &'b self,
         discretization: &'b Discretization,
@@ -273,7 +288,8 @@ impl NearRules {
         stretches.filter(|(stretch, _)| stretch.range[0] < stretch.range[1])
     }
 
-    /// Fills `near` with nodes on a stretch of `panel` that resolve its action on a point off the curve.
+    /// Fills `near` with nodes on a stretch of `panel` that resolve its action on a point off the
+    /// curve.
     pub fn fill_off_curve(
         &self,
         discretization: &Discretization,
@@ -422,7 +438,8 @@ fn projection(a: [f64; 2], b: [f64; 2]) -> f64 {
     -(a[0] * d[0] + a[1] * d[1]) / (d[0] * d[0] + d[1] * d[1])
 }
 
-/// On which side of the source panel the target's panel `home` lies, if it is as long and next to it on the same smooth piece.
+/// On which side of the source panel the target's panel `home` lies, if it is as long and next to
+/// it on the same smooth piece.
 fn next_door(discretization: &Discretization, home: usize, panel: usize) -> Option<Side> {
     let (mine, other) = (discretization.panel(home), discretization.panel(panel));
     let smooth = mine.piece == other.piece
@@ -436,7 +453,8 @@ fn next_door(discretization: &Discretization, home: usize, panel: usize) -> Opti
     None
 }
 
-/// The offsets of a panel's ends from the foot in the curve's parameter, across the seam of a closed curve if that is shorter.
+/// The offsets of a panel's ends from the foot in the curve's parameter, across the seam of a
+/// closed curve if that is shorter.
 pub fn offsets(discretization: &Discretization, sight: &Sight, panel: usize) -> [f64; 2] {
     let panel = discretization.panel(panel);
     let panels = discretization.panels().as_slice();

@@ -1,4 +1,5 @@
-//! The near rules against brute force, mode by mode: panels halved forty times towards the target and towards their ends.
+//! The near rules against brute force, mode by mode: panels halved forty times towards the target
+//! and towards their ends.
 
 use std::sync::Arc;
 
@@ -75,7 +76,8 @@ fn brute_force(discretization: &Discretization, panel: usize, target: usize) -> 
     integrals(at, order, &nodes, &separation, &interpolation)
 }
 
-/// The largest error of each mode over a panel's targets, relative to the mode's largest entry of that target.
+/// The largest error of each mode over a panel's targets, relative to the mode's largest entry of
+/// that target.
 fn errors(curve: Arc<dyn GeneratingCurve>, panels: usize, order: usize, panel: usize) -> Vec<f64> {
     let panels = Panels::equal_arcs(&*curve, panels).expect("panels");
     let discretization = Discretization::new(curve, panels, order).expect("nodes");
@@ -109,8 +111,8 @@ fn list(errors: &[f64]) -> String {
     errors.iter().map(|e| format!("{e:.0e} ")).collect()
 }
 
-/// With so many nodes a panel, modes up to this one have decay lengths that the rules resolve to the bar; the density's own
-/// interpolation gives out earlier.
+/// With so many nodes a panel, modes up to this one have decay lengths that the rules resolve to
+/// the bar; the density's own interpolation gives out earlier.
 const RESOLVED: [(usize, usize); 2] = [(10, 6), (16, 20)];
 
 #[test]

@@ -1,8 +1,9 @@
-//! What the sum over a body's own points does to itself.
+//! Matrices of the sum over a body's own points, at these points.
 //!
-//! A fast summation over the points of all bodies counts those of a point's own body too, by a rule that is no good there. On
-//! equidistant azimuths that part is rotationally invariant like the integral it stands for: mode by mode a small matrix, which belongs to the
-//! shape and takes the part away again, to rounding.
+//! A fast summation over the points of all bodies includes the points of the target's own body,
+//! where the rule is not accurate. This part has to be subtracted. On equidistant azimuths it is
+//! rotationally invariant like the integral that it approximates: for each mode a small matrix,
+//! which depends on the shape alone and subtracts the part to rounding.
 
 use std::f64::consts::PI;
 
@@ -35,7 +36,8 @@ impl Transforms {
             (0..=n_max)
                 .flat_map(|n| (0..half).map(move |l| (n, l)))
                 .map(|(n, l)| {
-                    // Azimuth l and its mirror image, which coincide at 0 and, for even numbers, opposite to it.
+                    // Azimuth l and its mirror image, which coincide at 0 and, for even numbers,
+                    // opposite to it.
                     let pair = if 2 * l % azimuths == 0 { 1.0 } else { 2.0 };
                     let angle = 2.0 * PI * (n * l % azimuths) as f64 / azimuths as f64;
                     pair * 2.0 * PI / azimuths as f64 * weight(angle)
@@ -53,8 +55,9 @@ impl Transforms {
 }
 
 impl ModalMatrices {
-    /// The matrices of the sum over points at so many azimuths of every node, each with its share of the surface, without what a point does to
-    /// itself: of $w_D D + w_S S$, for modes up to `n_max`, at most half the azimuths.
+    /// The matrices of $w_D D + w_S S$ summed over points at so many azimuths of every node, each
+    /// with its share of the surface; a point's own term is left out. For modes up to `n_max`, at
+    /// most half the azimuths.
     pub fn of_point_sum(
         discretization: &Discretization,
         weights: LayerWeights,
@@ -76,7 +79,8 @@ impl ModalMatrices {
     }
 }
 
-/// The kernel's entries between a target at azimuth zero and all sources: entry after entry, source after source, azimuth after azimuth.
+/// The kernel's entries between a target at azimuth zero and all sources: entry after entry, source
+/// after source, azimuth after azimuth.
 fn sample(
     nodes: &[Node],
     target: usize,

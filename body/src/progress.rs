@@ -8,7 +8,7 @@ pub trait Progress: Sync {
     /// This many more steps of the stage are done.
     fn advance(&self, steps: usize);
 
-    /// Whether whoever waits has lost interest: long computations end with an error soon after.
+    /// Whether the computation should stop: long ones end with an error soon after.
     fn is_cancelled(&self) -> bool {
         false
     }

@@ -1,8 +1,10 @@
-//! The surface as a thin shell of unit mass per area: what joins rigid motions with forces and torques.
+//! The surface as a thin shell of unit mass per area: the projection onto rigid motions, and
+//! densities of given force and torque.
 //!
-//! In $L^2$ of the surface a shell's linear and angular momentum are the inner products of its velocity with the six rigid motions. So
-//! the orthogonal projection $P\sigma$ onto them is the rigid motion that has the momenta of $\sigma$, and the rigid motion with the
-//! momenta $F$ and $T$ is, as a density, the one of force $F$ and torque $T$ that is smallest in $L^2$.
+//! In $L^2$ of the surface a shell's linear and angular momentum are the inner products of its
+//! velocity with the six rigid motions. So the orthogonal projection $P\sigma$ onto them is the
+//! rigid motion that has the momenta of $\sigma$. And of all densities with force $F$ and torque
+//! $T$ the smallest in $L^2$ is the rigid motion with the momenta $F$ and $T$.
 
 use std::f64::consts::PI;
 
@@ -47,8 +49,9 @@ impl Shell {
         Vector3::new(0.0, 0.0, self.centroid)
     }
 
-    /// The rigid motion in which the shell has these momenta, both motion and momenta about the origin:
-    /// $F/\lvert\Gamma\rvert + (I^{-1} (T - c \times F)) \times (x - c)$ at $x$, with the centroid $c$ and the inertia $I$ about it.
+    /// The rigid motion in which the shell has these momenta, both motion and momenta about the
+    /// origin: $F/\lvert\Gamma\rvert + (I^{-1} (T - c \times F)) \times (x - c)$ at $x$, with the
+    /// centroid $c$ and the inertia $I$ about it.
     pub fn motion(&self, Wrench { force, torque }: Wrench) -> RigidMotion {
         let about_centroid = torque - self.centroid().cross(&force);
         let angular_velocity = Vector3::new(

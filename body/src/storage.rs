@@ -2,8 +2,9 @@
 
 use memmap2::MmapMut;
 
-/// Zeroed doubles, on huge pages where the system has them: the matrices of all modes are written once from end to end, and with
-/// small pages the system would spend as long handing out that memory as the solver filling it.
+/// Zeroed doubles, on huge pages where the system has them: the matrices of all modes are written
+/// once from end to end, and with small pages the system would spend as long handing out that
+/// memory as the solver filling it.
 #[derive(Debug)]
 pub enum Storage {
     Mapped(MmapMut),
@@ -16,7 +17,8 @@ impl Storage {
         let Ok(map) = MmapMut::map_anon(length * size_of::<f64>()) else {
             return Self::Allocated(vec![0.0; length]);
         };
-        // An advice: nothing is lost where it is not taken.
+        // This is advice to the system: where it is not followed the memory is the same, only
+        // slower.
         #[cfg(target_os = "linux")]
         let _ = map.advise(memmap2::Advice::HugePage);
         Self::Mapped(map)

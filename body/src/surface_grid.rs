@@ -1,8 +1,11 @@
-//! A surface as points: every node on equidistant azimuths, and the way from modes to values there and back.
+//! A surface as points: every node on equidistant azimuths, and the way from modes to values there
+//! and back.
 //!
-//! Fields are *scaled*: their modes are multiplied by the square roots of the nodes' quadrature weights, as the rows and columns of the
-//! [modal matrices](super::matrix) are, so that the Euclidean norm is that of $L^2$ of the surface (but for a factor of two in the square of mode 0).
-//! Component `j` (radial, azimuthal, axial) at node `k` of family `f` of mode `n` is number $((2n + f)\,3 + j) N + k$.
+//! Fields are *scaled*: their modes are multiplied by the square roots of the nodes' quadrature
+//! weights, as the rows and columns of the [modal matrices](super::matrix) are, so that the
+//! Euclidean norm is that of $L^2$ of the surface (but for a factor of two in the square of mode
+//! 0). Component `j` (radial, azimuthal, axial) at node `k` of family `f` of mode `n` is number
+//! $((2n + f)\,3 + j) N + k$.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -17,7 +20,8 @@ use super::layers::LayerWeights;
 use crate::kernel::layer_velocity;
 use f64_lanes::padded;
 
-/// The points of a surface, in the body's frame: panel after panel, on it azimuth after azimuth, on that node after node.
+/// The points of a surface, in the body's frame: panel after panel, on it azimuth after azimuth, on
+/// that node after node.
 #[derive(Debug)]
 pub struct SurfaceGrid {
     nodes: usize,
@@ -30,13 +34,15 @@ pub struct SurfaceGrid {
     roots: Vec<f64>,
     /// Cosine and sine of the azimuths.
     directions: Vec<[f64; 2]>,
-    /// Azimuth after azimuth, what each family of each mode is there: of radial and axial components, and of azimuthal ones.
+    /// Azimuth after azimuth, what each family of each mode is there: of radial and axial
+    /// components, and of azimuthal ones.
     waves: [Vec<f64>; 2],
     position: [Vec<f64>; 3],
     normal: [Vec<f64>; 3],
 }
 
-/// One vector for each point of a [`SurfaceGrid`], component after component, panels padded with zeros.
+/// One vector for each point of a [`SurfaceGrid`], component after component, panels padded with
+/// zeros.
 pub type PointVectors = [Vec<f64>; 3];
 
 /// Azimuths that determine modes up to `n_max`.
@@ -83,7 +89,8 @@ impl SurfaceGrid {
                     }
                 }
             }
-            // Copies of the last point, which are given no strength: no source must be where a target may be by accident.
+            // Copies of the last point, which are given no strength: no source must be where a
+            // target may be by accident.
             while position[0].len() % stride != 0 {
                 for buffer in position.iter_mut().chain(&mut normal) {
                     buffer.push(buffer[buffer.len() - 1]);
@@ -112,6 +119,11 @@ impl SurfaceGrid {
     /// Points.
     pub fn len(&self) -> usize {
         self.nodes * self.azimuths
+    }
+
+    /// Whether there are no points.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
     }
 
     /// Azimuths of each node.
@@ -218,7 +230,8 @@ impl SurfaceGrid {
         }
     }
 
-    /// The velocity at `target` (in the body's frame) of the points of a panel; `strengths` are densities times shares of the surface.
+    /// The velocity at `target` (in the body's frame) of the points of a panel; `strengths` are
+    /// densities times shares of the surface.
     pub fn panel_velocity(
         &self,
         panel: usize,

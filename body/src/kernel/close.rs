@@ -1,39 +1,51 @@
-//! Velocity, pressure and velocity gradient of both layers at a ring, from densities on other rings.
+//! Velocity, pressure and velocity gradient of both layers at a ring, from densities on other
+//! rings.
 //!
-//! The gradient and the pressure of a double layer have kernels of strength $1/|\bar x|^3$, which lose all digits next to the surface.
-//! Integration by parts on the closed surface moves one derivative to the density. With the tangential operators
-//! $\mathcal M_{ij} = \nu_j \partial_i - \nu_i \partial_j$ (Günter; Kupradze 1979, chapter V), $\tau_i = \mathcal M_{ij}\sigma_j$ and $G = 1/4\pi|\bar x|$
+//! The gradient and the pressure of a double layer have kernels of strength $1/|\bar x|^3$, which
+//! lose all digits next to the surface. Integration by parts on the closed surface moves one
+//! derivative to the density. With the tangential operators
+//! $\mathcal M_{ij} = \nu_j \partial_i - \nu_i \partial_j$ (Günter; Kupradze 1979, chapter V),
+//! $\tau_i = \mathcal M_{ij}\sigma_j$ and $G = 1/4\pi|\bar x|$
 //!
-//! $$ D[\sigma]_i = \int (\nu'\\!\cdot\nabla' G)\\, \sigma_i - \int G\\, \tau_i + 2 \int S_{ij} \tau_j , \qquad
+//! $$ D[\sigma]_i = \int (\nu'\\!\cdot\nabla' G)\\, \sigma_i - \int G\\, \tau_i +
+//!    2 \int S_{ij} \tau_j , \qquad
 //!    p = \int P^S_j (\varrho + 2\tau)_j , $$
-//! $$ \partial_l u_i = \int \partial_l S_{ij} (\varrho + 2\tau)_j - \int \partial_l G\\, \tau_i + \Bigl(\nabla \times \int G\\, (\nu\times\nabla) \sigma_i\Bigr)_l $$
+//! $$ \partial_l u_i = \int \partial_l S_{ij} (\varrho + 2\tau)_j - \int \partial_l G\\, \tau_i +
+//!    \Bigl(\nabla \times \int G\\, (\nu\times\nabla) \sigma_i\Bigr)_l $$
 //!
-//! for $u = D[\sigma] + S[\varrho]$ off the surface, with nothing stronger than $1/|\bar x|^2$. The velocity is taken with its own kernels.
+//! for $u = D[\sigma] + S[\varrho]$ off the surface, with nothing stronger than $1/|\bar x|^2$. The
+//! velocity is computed from $D$ and $S$ as they are.
 //!
-//! On a surface of revolution with unit tangent $t$ along the curve (arc length $\ell$), $\nu \times t = e_\theta$ and
-//! $\nu\times\nabla = e_\theta \partial_\ell - t\\, r^{-1} \partial_\theta$: the tensor $(\nu\times\nabla)_m \sigma_i$ has the six components
-//! $y^\theta_i = \partial_\ell \sigma_i$ and $y^t_i = -r^{-1} (\partial_\theta \sigma)_i$.
+//! On a surface of revolution with unit tangent $t$ along the curve (arc length $\ell$),
+//! $\nu \times t = e_\theta$ and
+//! $\nu\times\nabla = e_\theta \partial_\ell - t\\, r^{-1} \partial_\theta$: the tensor
+//! $(\nu\times\nabla)_m \sigma_i$ has the six components $y^\theta_i = \partial_\ell \sigma_i$ and
+//! $y^t_i = -r^{-1} (\partial_\theta \sigma)_i$.
 
 use std::f64::consts::PI;
 
 use pulp::Simd;
 
-use super::modes::{Kernel, Parity};
+use super::double_layer::DoubleLayer;
+use super::invariant::{Kernel, Parity};
 use super::moments::{CubicMoments, Moments};
 use super::pair::{Pair, Separation};
-use super::{DoubleLayer, SingleLayer, SingleLayerPressure};
+use super::pressure::SingleLayerPressure;
+use super::single_layer::SingleLayer;
 use f64_lanes::Lanes;
 
-/// Components of the densities: $\sigma$, $\varrho$, $y^\theta$, $y^t$, three each (radial, azimuthal, axial).
+/// Components of the densities: $\sigma$, $\varrho$, $y^\theta$, $y^t$, three each (radial,
+/// azimuthal, axial).
 pub(crate) const DENSITIES: usize = 12;
 
 /// A kernel that takes densities to fields, mode by mode.
 ///
-/// A component of density or field belongs to the first family of a mode as $\cos n\theta$ or as $\sin n\theta$: as $\sin$ the azimuthal
-/// components of vectors and those with one azimuthal index of tensors; but in $y^t$ the other two.
+/// A component of density or field belongs to the first family of a mode as $\cos n\theta$ or as
+/// $\sin n\theta$: as $\sin$ the azimuthal components of vectors and those with one azimuthal index
+/// of tensors; but in $y^t$ the other two.
 pub(crate) trait Potential<const K: usize, const FIELDS: usize>: Kernel<K> {
-    /// The fields of one mode of the first family, from the kernel's entries and the densities of that mode and family; the second family
-    /// has the same.
+    /// The fields of one mode of the first family, from the kernel's entries and the densities of
+    /// that mode and family; the second family has the same.
     fn fields<S: Simd>(
         normal: [Lanes<S>; 2],
         entries: &[Lanes<S>; K],
@@ -45,13 +57,15 @@ pub(crate) trait Potential<const K: usize, const FIELDS: usize>: Kernel<K> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct VelocityPressure;
 
-/// Velocity, pressure, and the velocity gradient row by row: $\partial_j u_i$ is field $4 + 3i + j$, of thirteen.
+/// Velocity, pressure, and the velocity gradient row by row: $\partial_j u_i$ is field
+/// $4 + 3i + j$, of thirteen.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct VelocityPressureGradient;
 
 /// Entries of the double layer, the single layer and its pressure.
 const FLOW: usize = 9 + 9 + 3;
-/// Three vectors at three components each times $\cos t$, $\sin t$ and 1, and the triple products $x_i x_l x'_k$.
+/// Three vectors at three components each times $\cos t$, $\sin t$ and 1, and the triple products
+/// $x_i x_l x'_k$.
 const GRADIENT: usize = FLOW + 27 + 18;
 
 /// The index pairs $i \le l$ of the triple products.
@@ -164,7 +178,8 @@ impl Kernel<GRADIENT> for VelocityPressureGradient {
     }
 }
 
-/// Modes of $v_l \cos t$, $v_l \sin t$ and $v_l$ over $4\pi|\bar x|^3$ for the vectors $v = \bar x$, $-\bar x \times e'_\theta$ and $-\bar x \times t'$.
+/// Modes of $v_l \cos t$, $v_l \sin t$ and $v_l$ over $4\pi|\bar x|^3$ for the vectors
+/// $v = \bar x$, $-\bar x \times e'_\theta$ and $-\bar x \times t'$.
 #[inline(always)]
 fn turned_vectors<S: Simd>(pair: &Pair<S>, m: &Moments<S>) -> [Lanes<S>; 27] {
     let Pair {
@@ -198,7 +213,8 @@ fn turned_vectors<S: Simd>(pair: &Pair<S>, m: &Moments<S>) -> [Lanes<S>; 27] {
     entries
 }
 
-/// Moments of $c^k q^{-3/2}$ with $\cos nt$ ($k = 0, 1, 2$) and of $c^k \sin t\\, q^{-3/2}$ with $\sin nt$ ($k = 0, 1$).
+/// Moments of $c^k q^{-3/2}$ with $\cos nt$ ($k = 0, 1, 2$) and of $c^k \sin t\\, q^{-3/2}$ with
+/// $\sin nt$ ($k = 0, 1$).
 #[derive(Clone, Copy)]
 struct SquareMoments<S: Simd> {
     cos: [Lanes<S>; 3],
@@ -225,7 +241,8 @@ fn square_moments<S: Simd>(pair: &Pair<S>, m: &Moments<S>, factor: f64) -> Squar
 
 // Methods, not closures: these would not be compiled for the instruction set that was chosen.
 impl<S: Simd> SquareMoments<S> {
-    /// The modes of $v \cos t$, $v \sin t$ and $v$ over $q^{3/2}$ for the even $v$ = `e0` + `e1` $c$.
+    /// The modes of $v \cos t$, $v \sin t$ and $v$ over $q^{3/2}$ for the even $v$ = `e0` + `e1`
+    /// $c$.
     #[inline(always)]
     fn even(&self, e0: Lanes<S>, e1: Lanes<S>) -> [Lanes<S>; 3] {
         let ([u0, u1, u2], [v0, v1]) = (self.cos, self.sin);
@@ -244,7 +261,8 @@ impl<S: Simd> SquareMoments<S> {
     }
 }
 
-/// Modes of $-\frac{3}{8\pi} \bar x_i \bar x_l \bar x'_k / |\bar x|^5$, the first two indices in the target's frame, the last in the source's.
+/// Modes of $-\frac{3}{8\pi} \bar x_i \bar x_l \bar x'_k / |\bar x|^5$, the first two indices in
+/// the target's frame, the last in the source's.
 #[inline(always)]
 fn triple_products<S: Simd>(pair: &Pair<S>, moments: &CubicMoments<S>) -> [Lanes<S>; 18] {
     let Pair { r, rp, a, b, .. } = *pair;
@@ -339,7 +357,8 @@ fn flow_fields<S: Simd>(
     fields
 }
 
-/// A component of one of the vectors times a density turned into the target's frame, from its three entries.
+/// A component of one of the vectors times a density turned into the target's frame, from its three
+/// entries.
 #[inline(always)]
 fn turned<S: Simd>(
     entries: &[Lanes<S>],
@@ -400,7 +419,8 @@ impl Potential<GRADIENT, 13> for VelocityPressureGradient {
                 fields[4 + 3 * i + l] = of_tau[i] + (of_theta[i] + of_curve[i]);
             }
         }
-        // dS_ij/dx_l = (-delta_ij x_l + delta_il x_j + delta_jl x_i)/(8 pi |x|^3) - 3 x_i x_j x_l/(8 pi |x|^5).
+        // dS_ij/dx_l = (-delta_ij x_l + delta_il x_j + delta_jl x_i)/(8 pi |x|^3)
+        //              - 3 x_i x_j x_l/(8 pi |x|^5).
         for i in 0..3 {
             for l in 0..3 {
                 let triple = &entries[FLOW + 27 + 3 * PAIR_OF[i][l]..][..3];

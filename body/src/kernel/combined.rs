@@ -2,14 +2,16 @@
 
 use pulp::Simd;
 
-use super::modes::{Kernel, Parity};
+use super::double_layer::DoubleLayer;
+use super::invariant::{Kernel, Parity};
 use super::moments::Moments;
 use super::pair::{Pair, Separation};
-use super::{DoubleLayer, SingleLayer};
+use super::single_layer::SingleLayer;
 use f64_lanes::Lanes;
 
-/// The kernel $D_{ij} + \eta S_{ij}$ (Hebeker 1986): the second-kind equation $(\frac12 + D + \eta S)\sigma = f$ of the exterior
-/// Dirichlet problem has exactly one solution for every $\eta > 0$.
+/// The kernel $D_{ij} + \eta S_{ij}$ (Hebeker 1986): the second-kind equation
+/// $(\frac12 + D + \eta S)\sigma = f$ of the exterior Dirichlet problem has exactly one solution
+/// for every $\eta > 0$.
 #[derive(Clone, Copy, Debug)]
 pub struct CombinedField {
     /// Weight of the single layer, in units of 1/length.
@@ -38,8 +40,8 @@ impl Kernel<9> for CombinedField {
     }
 }
 
-/// `double + eta * single`. A plain loop: closures handed to the standard library would not be compiled for the instruction
-/// set that was chosen.
+/// `double + eta * single`. A plain loop: closures handed to the standard library would not be
+/// compiled for the instruction set that was chosen.
 #[inline(always)]
 fn weighted_sum<S: Simd>(
     double: [Lanes<S>; 9],

@@ -34,7 +34,8 @@ pub struct FlowGradientAt {
     pub velocity: Vector3<f64>,
     /// Pressure, zero at infinity.
     pub pressure: f64,
-    /// Velocity gradient, $\partial u_i / \partial x_j$ in row $i$ and column $j$; in units of 1/time.
+    /// Velocity gradient, $\partial u_i / \partial x_j$ in row $i$ and column $j$; in units of
+    /// 1/time.
     pub gradient: Matrix3<f64>,
 }
 
@@ -140,8 +141,9 @@ impl SurfacePoints {
         self.position[0].len()
     }
 
-    /// Velocity and pressure of both layers at a target, and the velocity gradient if asked for (else zero), summed in the order of
-    /// the points; `range` begins and ends where the points were padded.
+    /// Velocity and pressure of both layers at a target, and the velocity gradient if asked for
+    /// (else zero), summed in the order of the points; `range` begins and ends where the points
+    /// were padded.
     pub fn sum<const GRADIENT: bool>(
         &self,
         range: Range<usize>,
@@ -195,7 +197,8 @@ impl<'a, const GRADIENT: bool> WithSimd for Sum<'a, GRADIENT> {
             ];
             let inv2 = one / dot(&d, &d);
             let inv = inv2.sqrt();
-            // The direction e = d/|d|: zero where |d|^2 overflows, and with it all that decays faster than 1/|d|.
+            // The direction e = d/|d|: zero where |d|^2 overflows, and with it all that decays
+            // faster than 1/|d|.
             let e = [inv * d[0], inv * d[1], inv * d[2]];
             let (ef, eg, en, nf) = (dot(&e, &f), dot(&e, &g), dot(&e, &n), dot(&n, &f));
             // u = (6 (e.f)(e.n)/|d|^2 + (e.g)/|d|) e + g/|d|.
@@ -231,7 +234,8 @@ impl<'a, const GRADIENT: bool> WithSimd for Sum<'a, GRADIENT> {
     }
 }
 
-/// The velocity at `target` of $w_D D + w_S S$ over points, of weights $[w_D, w_S]$ and one density; the arrays are whole registers long.
+/// The velocity at `target` of $w_D D + w_S S$ over points, of weights $[w_D, w_S]$ and one
+/// density; the arrays are whole registers long.
 pub(crate) fn layer_velocity(
     weights: [f64; 2],
     position: [&[f64]; 3],

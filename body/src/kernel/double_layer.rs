@@ -4,13 +4,15 @@ use std::f64::consts::PI;
 
 use pulp::Simd;
 
-use super::modes::{Kernel, Parity};
+use super::invariant::{Kernel, Parity};
 use super::moments::Moments;
 use super::pair::{Pair, Separation};
 use f64_lanes::Lanes;
 
-/// The double-layer kernel $D_{ij} = \frac{3}{4\pi} \bar x_i \bar x_j\\, \bar x\cdot\nu' / |\bar x|^5$; nine entries,
-/// row by row, in units of 1/length². The exterior limit of its potential is $+\frac12$ of the density plus the principal value.
+/// The double-layer kernel
+/// $D_{ij} = \frac{3}{4\pi} \bar x_i \bar x_j\\, \bar x\cdot\nu' / |\bar x|^5$; nine entries, row
+/// by row, in units of 1/length². The exterior limit of its potential is $+\frac12$ of the density
+/// plus the principal value.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DoubleLayer;
 

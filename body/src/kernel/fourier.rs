@@ -1,9 +1,10 @@
 //! Modes of well-separated pairs: the trapezoidal rule in the azimuth, all modes by FFT.
 //!
-//! The kernels are analytic in $t$ up to $\lvert\mathrm{Im}\\, t\rvert = \mathrm{acosh}\\,\chi$: mode $n$ is of the size of
-//! $e^{-n\\,\mathrm{acosh}\\,\chi}$, and with $N$ samples it is off by $e^{-(N - n)\\,\mathrm{acosh}\\,\chi}$. Modes below rounding are left zero,
-//! so the cost does not grow with the number of modes. Four real sequences share a complex transform: two even ones and two odd ones,
-//! told apart afterwards by symmetry.
+//! The kernels are analytic in $t$ up to $\lvert\mathrm{Im}\\, t\rvert = \mathrm{acosh}\\,\chi$:
+//! mode $n$ is of the size of $e^{-n\\,\mathrm{acosh}\\,\chi}$, and with $N$ samples it is off by
+//! $e^{-(N - n)\\,\mathrm{acosh}\\,\chi}$. Modes below rounding are left zero, so the cost does not
+//! grow with the number of modes. Four real sequences share a complex transform: two even ones and
+//! two odd ones, told apart afterwards by symmetry.
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -13,7 +14,7 @@ use num_complex::Complex64;
 use pulp::Simd;
 use rustfft::{Fft, FftPlanner};
 
-use super::modes::{Kernel, Parity};
+use super::invariant::{Kernel, Parity};
 use super::pair::Pair;
 use f64_lanes::{Lanes, padded};
 

@@ -3,40 +3,11 @@
 use pulp::{Arch, Simd, WithSimd};
 
 use super::fourier::{self, Fourier};
-use super::moments::{MomentSeries, Moments};
-use super::pair::{Pair, Separation};
+use super::invariant::Kernel;
+use super::moments::MomentSeries;
+use super::pair::Pair;
 use crate::special::toroidal::{self, Ladder};
 use f64_lanes::{Lanes, padded};
-
-/// Whether an entry of a kernel is even or odd in the azimuthal separation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Parity {
-    Even,
-    Odd,
-}
-
-impl Parity {
-    /// Velocity from density: odd where exactly one index is azimuthal.
-    pub const OF_VELOCITY: [Self; 9] = {
-        use Parity::{Even, Odd};
-        [Even, Odd, Even, Odd, Even, Odd, Even, Odd, Even]
-    };
-
-    /// Pressure from density.
-    pub const OF_PRESSURE: [Self; 3] = [Self::Even, Self::Odd, Self::Even];
-}
-
-/// A rotationally invariant kernel with `K` entries.
-pub(crate) trait Kernel<const K: usize>: Copy + Send + Sync {
-    /// The entries' parities.
-    const PARITY: [Parity; K];
-
-    /// Mode `m.n` of every entry.
-    fn mode<S: Simd>(&self, pair: &Pair<S>, m: &Moments<S>) -> [Lanes<S>; K];
-
-    /// Every entry at one azimuthal separation.
-    fn sample<S: Simd>(&self, separation: &Separation<S>) -> [Lanes<S>; K];
-}
 
 /// The ring on which a kernel is evaluated.
 #[derive(Clone, Copy, Debug)]
@@ -182,7 +153,8 @@ impl Modes {
         &self.fourier
     }
 
-    /// The toroidal functions of a register, for one degree beyond the last mode, and the factor they are yet to be multiplied by.
+    /// The toroidal functions of a register, for one degree beyond the last mode, and the factor
+    /// they are yet to be multiplied by.
     #[inline(always)]
     pub(super) fn ladder<'w, S: Simd>(
         &self,

@@ -3,14 +3,17 @@
 //! With $c = 1 - \cos t$ and $|\bar x|^2 = q = \rho^2 + R c$,
 //!
 //! $$ E_m(n) = \int_{-\pi}^{\pi} \frac{\cos nt}{q^{m+1/2}}\\, dt, \qquad
-//!    \int_{-\pi}^{\pi} \frac{c^k \cos nt}{q^{m+1/2}}\\, dt, \qquad \int_{-\pi}^{\pi} \frac{c^k \sin t \sin nt}{q^{m+1/2}}\\, dt . $$
+//!    \int_{-\pi}^{\pi} \frac{c^k \cos nt}{q^{m+1/2}}\\, dt, \qquad
+//!    \int_{-\pi}^{\pi} \frac{c^k \sin t \sin nt}{q^{m+1/2}}\\, dt . $$
 //!
-//! Powers of $c$, unlike powers of $\cos t$, are small where the singularity is, so the kernels written in them are sums of
-//! terms of the size of the result. Every moment follows from the bounded numbers $e_m = \rho^{2m} E_m$; with $k_0 = 2\sqrt2/\sqrt R$,
-//! $\nu = n - 1/2$ and $G_n = \nu (D_{n-1} - h Q_n)$
+//! Powers of $c$, unlike powers of $\cos t$, are small where the singularity is, so the kernels
+//! written in them are sums of terms of the size of the result. Every moment follows from the
+//! bounded numbers $e_m = \rho^{2m} E_m$; with $k_0 = 2\sqrt2/\sqrt R$, $\nu = n - 1/2$ and
+//! $G_n = \nu (D_{n-1} - h Q_n)$
 //!
 //! $$ e_0 = k_0 Q_n, \quad e_1 = \frac{2 k_0 G_n}{h+2}, \quad
-//!    e_2 = \frac{4 k_0}{3}\left[\frac{(n^2 - \tfrac14) h Q_n}{h+2} + \frac{2 (1+h) G_n}{(h+2)^2}\right] . $$
+//!    e_2 = \frac{4 k_0}{3}\left[\frac{(n^2 - \tfrac14) h Q_n}{h+2} +
+//!    \frac{2 (1+h) G_n}{(h+2)^2}\right] . $$
 
 use pulp::Simd;
 
@@ -28,14 +31,16 @@ pub(crate) struct Moments<S: Simd> {
     pub e0: Lanes<S>,
     pub e1: Lanes<S>,
     pub e2: Lanes<S>,
-    /// $(E_0(n-1) + E_0(n+1))/2$ and the same of $\rho^2 E_1$: the moments with another factor $\cos t$.
+    /// $(E_0(n-1) + E_0(n+1))/2$ and the same of $\rho^2 E_1$: the moments with another factor
+    /// $\cos t$.
     pub e0_cos: Lanes<S>,
     pub e1_cos: Lanes<S>,
     /// $(E_0(n-1) - E_0(n+1))/2$: the moment $\int \sin t \sin nt\\, q^{-1/2}$.
     pub e0_sin: Lanes<S>,
 }
 
-/// Makes the moments of one register of pairs, mode after mode, from a ladder of toroidal functions.
+/// Makes the moments of one register of pairs, mode after mode, from a ladder of toroidal
+/// functions.
 pub(crate) struct MomentSeries<'a, S: Simd> {
     q: &'a [S::f64s],
     d: &'a [S::f64s],
@@ -124,8 +129,8 @@ impl<'a, S: Simd> MomentSeries<'a, S> {
     }
 }
 
-/// Moments of $c^k q^{-5/2}$ with $\cos nt$ ($k = 0 \dots 3$) and $\sin t \sin nt$ ($k = 0 \dots 2$): what kernels of the stresslet's
-/// strength are made of.
+/// Moments of $c^k q^{-5/2}$ with $\cos nt$ ($k = 0 \dots 3$) and $\sin t \sin nt$
+/// ($k = 0 \dots 2$): what kernels of the stresslet's strength are made of.
 #[derive(Clone, Copy)]
 pub(crate) struct CubicMoments<S: Simd> {
     pub g: [Lanes<S>; 4],

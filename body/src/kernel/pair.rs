@@ -6,8 +6,9 @@ use f64_lanes::Lanes;
 
 /// One target and a register of sources in the meridian half plane.
 ///
-/// Symbols as in the module's formulas: target at radius `r`, source at radius `rp`,
-/// `a` $= r - r'$ and `b` $= z - z'$ given as differences, normals `(nu_r, nu_z)` at the source, `(mu_r, mu_z)` at the target.
+/// Symbols as in the module's formulas: target at radius `r`, source at radius `rp`, `a` $= r - r'$
+/// and `b` $= z - z'$ given as differences, normals `(nu_r, nu_z)` at the source, `(mu_r, mu_z)` at
+/// the target.
 #[derive(Clone, Copy)]
 pub(crate) struct Pair<S: Simd> {
     pub r: Lanes<S>,

@@ -37,17 +37,18 @@ pub(crate) struct Columns {
     pub far: usize,
 }
 
-impl Workspace {
-    /// The columns that densities need for the rings it was arranged for.
-    pub fn columns(&self) -> Columns {
-        Columns {
-            near: self.near,
-            far: self.order.len() - self.near,
+impl Columns {
+    /// The columns for the rings that a workspace was arranged for.
+    pub fn of(workspace: &Workspace) -> Self {
+        Self {
+            near: workspace.near,
+            far: workspace.order.len() - workspace.near,
         }
     }
 
-    /// The column of ring number `k` of `order`: the others begin after the near ones' last register.
-    pub fn column(&self, k: usize) -> usize {
+    /// The column of ring number `k` of the workspace's `order`: the others begin after the near
+    /// ones' last register.
+    pub fn place(&self, k: usize) -> usize {
         if k < self.near {
             k
         } else {
@@ -56,34 +57,8 @@ impl Workspace {
     }
 }
 
-impl Modes {
-    /// Adds to `fields` the modes of the potential's fields at `target`.
-    ///
-    /// `workspace` must have been arranged for the same rings.
-    pub fn add_fields<const K: usize, const FIELDS: usize>(
-        &self,
-        potential: &impl Potential<K, FIELDS>,
-        target: TargetRing,
-        sources: &SourceRings,
-        densities: &RingDensities,
-        workspace: &mut Workspace,
-        fields: &mut RingFields,
-    ) {
-        if sources.len() > 0 {
-            Arch::new().dispatch(Fields::<K, FIELDS, _> {
-                modes: self,
-                potential,
-                target,
-                sources,
-                densities,
-                workspace,
-                fields,
-            });
-        }
-    }
-}
-
-/// Modes of the fields on a ring: field `i` of family `f` of mode `n` is number `(2 n + f) FIELDS + i`.
+/// Modes of the fields on a ring: field `i` of family `f` of mode `n` is number
+/// `(2 n + f) FIELDS + i`.
 #[derive(Debug, Default)]
 pub(crate) struct RingFields {
     /// Each field's partial sums, one for each lane of a register.
@@ -95,6 +70,31 @@ impl RingFields {
     pub fn reset(&mut self, count: usize) {
         self.lanes.clear();
         self.lanes.resize(count * PADDING, 0.0);
+    }
+
+    /// Adds the modes of the potential's fields at `target`.
+    ///
+    /// `workspace` must have been arranged by `modes` for the same rings.
+    pub fn add<const K: usize, const FIELDS: usize>(
+        &mut self,
+        modes: &Modes,
+        potential: &impl Potential<K, FIELDS>,
+        target: TargetRing,
+        sources: &SourceRings,
+        densities: &RingDensities,
+        workspace: &mut Workspace,
+    ) {
+        if sources.len() > 0 {
+            Arch::new().dispatch(Fields::<K, FIELDS, _> {
+                modes,
+                potential,
+                target,
+                sources,
+                densities,
+                workspace,
+                fields: self,
+            });
+        }
     }
 
     /// The fields, field after field.
@@ -134,6 +134,7 @@ impl<const K: usize, const FIELDS: usize, P: Potential<K, FIELDS>> WithSimd
         let splat = |x| Lanes::splat(simd, x);
         let (r, none) = (splat(target.r), splat(0.0));
         let sums = &mut fields.lanes;
+        let columns = Columns::of(workspace);
         let near = workspace.near.div_ceil(S::F64_LANES);
         for register in 0..near {
             let (pair, q0, d0) = workspace.pair(simd, register, r, [none, none]);
@@ -163,7 +164,7 @@ impl<const K: usize, const FIELDS: usize, P: Potential<K, FIELDS>> WithSimd
         entries.clear();
         entries.resize((fourier.last() + 1) * K, 0.0);
         for k in workspace.near..sources.len() {
-            let (j, column) = (workspace.order[k], workspace.column(k));
+            let (j, column) = (workspace.order[k], columns.place(k));
             let pair = Pair::new(
                 r,
                 splat(sources.r[j]),

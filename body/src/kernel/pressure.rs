@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use pulp::Simd;
 
-use super::modes::{Kernel, Parity};
+use super::invariant::{Kernel, Parity};
 use super::moments::Moments;
 use super::pair::{Pair, Separation};
 use f64_lanes::Lanes;
@@ -13,8 +13,8 @@ use f64_lanes::Lanes;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SingleLayerPressure;
 
-/// The kernel $P^D_j = (-\nu'_j/|\bar x|^3 + 3 \bar x_j\\, \bar x\cdot\nu'/|\bar x|^5)/2\pi$ for viscosity 1; three entries, in units of
-/// 1/length³.
+/// The kernel $P^D_j = (-\nu'_j/|\bar x|^3 + 3 \bar x_j\\, \bar x\cdot\nu'/|\bar x|^5)/2\pi$ for
+/// viscosity 1; three entries, in units of 1/length³.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DoubleLayerPressure;
 

@@ -40,15 +40,17 @@ impl RingKernel {
         }
     }
 
-    /// Modes $0 \dots n_\text{max}$ (as defined in the [module](super)'s notes) at `target` from `source`: one row of
-    /// [`entries`](Self::entries) numbers a mode. Where the rings coincide they are infinite or NaN.
+    /// Modes $0 \dots n_\text{max}$ (as defined in the [module](super)'s notes) at `target` from
+    /// `source`: one row of [`entries`](Self::entries) numbers a mode. Where the rings coincide
+    /// they are infinite or NaN.
     ///
     /// ```
     /// use stokes_body::kernel::{Ring, RingKernel};
     ///
     /// let source = Ring { r: 1.0, z: 0.0, normal: [1.0, 0.0] };
     /// let target = Ring { r: 1.0, z: 2.0, normal: [1.0, 0.0] };
-    /// // Axial pull on a ring of axial Stokeslets: int (1/|x| + z^2/|x|^3)/(8 pi) dt > 2 pi/(4 pi) / |x|_max.
+    /// // Axial pull on a ring of axial Stokeslets:
+    /// // int (1/|x| + z^2/|x|^3)/(8 pi) dt > 2 pi/(4 pi) / |x|_max.
     /// let modes = RingKernel::SingleLayer.modes(&target, &source, 3);
     /// assert!(modes[0][8] > 0.5 / 8f64.sqrt() && modes[0][8] < 0.5 / 2.0);
     /// ```

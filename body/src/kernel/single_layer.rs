@@ -4,13 +4,13 @@ use std::f64::consts::PI;
 
 use pulp::Simd;
 
-use super::modes::{Kernel, Parity};
+use super::invariant::{Kernel, Parity};
 use super::moments::Moments;
 use super::pair::{Pair, Separation};
 use f64_lanes::Lanes;
 
-/// The single-layer kernel $S_{ij} = (\delta_{ij}/|\bar x| + \bar x_i \bar x_j/|\bar x|^3)/8\pi$ for viscosity 1; nine entries,
-/// row by row, in units of 1/length.
+/// The single-layer kernel $S_{ij} = (\delta_{ij}/|\bar x| + \bar x_i \bar x_j/|\bar x|^3)/8\pi$
+/// for viscosity 1; nine entries, row by row, in units of 1/length.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SingleLayer;
 

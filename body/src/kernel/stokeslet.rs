@@ -8,9 +8,12 @@ use nalgebra::Vector3;
 ///
 /// With $d = x - x_0$ from the place $x_0$ of the force $f$,
 ///
-/// $$ u = \frac{1}{8\pi}\left(\frac{f}{\lvert d\rvert} + \frac{d\\, (d\cdot f)}{\lvert d\rvert^3}\right), \qquad p = \frac{d\cdot f}{4\pi\lvert d\rvert^3} . $$
+/// $$ u = \frac{1}{8\pi}
+///    \left(\frac{f}{\lvert d\rvert} + \frac{d\\, (d\cdot f)}{\lvert d\rvert^3}\right), \qquad
+///    p = \frac{d\cdot f}{4\pi\lvert d\rvert^3} . $$
 ///
-/// The velocity for viscosity $\mu$ is $u/\mu$; the pressure does not depend on it. Both are infinite at $x_0$ (or NaN).
+/// The velocity for viscosity $\mu$ is $u/\mu$; the pressure does not depend on it. Both are
+/// infinite at $x_0$ (or NaN).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stokeslet {
     /// Where the force acts.

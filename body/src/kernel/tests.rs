@@ -2,12 +2,13 @@
 
 use std::f64::consts::PI;
 
-use super::modes::Parity;
+use super::invariant::Parity;
 use super::pair::Pair;
 use super::*;
 use f64_lanes::Lanes;
 
-/// A row of a table of tests/data: geometry, mode, and the entries of every kernel in the order of its header.
+/// A row of a table of tests/data: geometry, mode, and the entries of every kernel in the order of
+/// its header.
 struct Row {
     label: String,
     target: TargetRing,
@@ -54,8 +55,9 @@ fn entries<const K: usize>(kernel: &impl Kernel<K>, row: &Row, n_max: usize) -> 
         .collect()
 }
 
-/// Largest error of each kernel, in units of its natural size next to the singularity: $1/r$ for the single layer,
-/// $1/\rho r$ for double layer, traction and single-layer pressure, $1/\rho^2 r$ for the double layer's pressure.
+/// Largest error of each kernel, in units of its natural size next to the singularity: $1/r$ for
+/// the single layer, $1/\rho r$ for double layer, traction and single-layer pressure, $1/\rho^2 r$
+/// for the double layer's pressure.
 fn worst(table: &str, n_max: usize) -> [(f64, String); 5] {
     let mut worst: [(f64, String); 5] = Default::default();
     for row in rows(table).iter().filter(|row| row.n <= n_max) {
@@ -189,8 +191,9 @@ impl Rings {
     }
 }
 
-/// All entries of the gradient's kernel in the size of the double layer's, $1/\rho r$ (the single layer's are smaller): near pairs by
-/// recurrence, well-separated ones by recurrence and by FFT, against sums over points of the kernels in space.
+/// All entries of the gradient's kernel in the size of the double layer's, $1/\rho r$ (the single
+/// layer's are smaller): near pairs by recurrence, well-separated ones by recurrence and by FFT,
+/// against sums over points of the kernels in space.
 #[test]
 fn modes_of_the_gradient_are_those_of_its_samples() {
     const N_MAX: usize = 60;

@@ -1,16 +1,19 @@
-//! Toroidal functions: Legendre functions of the second kind and half-integer degree, $Q_{n-1/2}(\chi)$.
+//! Toroidal functions: Legendre functions of the second kind and half-integer degree,
+//! $Q_{n-1/2}(\chi)$.
 //!
 //! They are carried together with their differences $D_n = Q_{n-1/2} - Q_{n+1/2}$, because near the
-//! singularity $\chi = 1$ the modal kernels are made of differences: subtracting the functions themselves
-//! would cost the digits that the kernels need. With $h = \chi - 1$ the recurrence in the degree
-//! (DLMF 14.10.3) becomes
+//! singularity $\chi = 1$ the modal kernels are made of differences: subtracting the functions
+//! themselves would cost the digits that the kernels need. With $h = \chi - 1$ the recurrence in
+//! the degree (DLMF 14.10.3) becomes
 //!
-//! $$ (n + \tfrac12) D_n = (n - \tfrac12) D_{n-1} - 2 n h Q_{n-1/2}, \qquad Q_{n+1/2} = Q_{n-1/2} - D_n . $$
+//! $$ (n + \tfrac12) D_n = (n - \tfrac12) D_{n-1} - 2 n h Q_{n-1/2}, \qquad
+//!    Q_{n+1/2} = Q_{n-1/2} - D_n . $$
 //!
-//! Upwards it is stable while $n\\,\mathrm{acosh}\\,\chi \lesssim 1$; downwards every term is positive, so
-//! nothing cancels at all, and it is started far enough out for its own solution to have died
-//! (Miller's algorithm). The starting values are complete elliptic integrals (Bulirsch's form) of the complementary
-//! modulus $k_c = \sqrt{h/(h+2)}$, which is known to full precision however close the points are:
+//! Upwards it is stable while $n\\,\mathrm{acosh}\\,\chi \lesssim 1$; downwards every term is
+//! positive, so nothing cancels at all, and it is started far enough out for its own solution to
+//! have died (Miller's algorithm). The starting values are complete elliptic integrals (Bulirsch's
+//! form) of the complementary modulus $k_c = \sqrt{h/(h+2)}$, which is known to full precision
+//! however close the points are:
 //!
 //! $$ Q_{-1/2} = \sqrt{\tfrac{2}{h+2}}\\, K, \qquad D_0 = \sqrt{2(h+2)}\\,(E - k_c^2 K). $$
 
@@ -18,7 +21,8 @@ use pulp::{Simd, WithSimd};
 
 use f64_lanes::Lanes;
 
-/// $\chi - 1$ that goes with upward recurrence for degrees up to `n_max`: $n\\,\mathrm{acosh}\\,\chi < 1$.
+/// $\chi - 1$ that goes with upward recurrence for degrees up to `n_max`:
+/// $n\\,\mathrm{acosh}\\,\chi < 1$.
 fn upward_limit(n_max: usize) -> f64 {
     let xi = 1.0 / n_max.max(1) as f64;
     2.0 * (0.5 * xi).sinh().powi(2)
@@ -27,7 +31,8 @@ fn upward_limit(n_max: usize) -> f64 {
 /// $Q_{-1/2}$ and $D_0 = Q_{-1/2} - Q_{1/2}$ at $\chi = 1 + h$.
 pub(crate) fn start(h: f64) -> (f64, f64) {
     let complementary = (h / (h + 2.0)).sqrt();
-    // The arguments are positive and finite for every pair of distinct points, so neither call can fail.
+    // The arguments are positive and finite for every pair of distinct points, so neither call can
+    // fail.
     let k = ellip::cel1(complementary).unwrap_or(f64::NAN);
     let b = ellip::cel2(complementary, 1.0, 0.0).unwrap_or(f64::NAN);
     let root = (h + 2.0).sqrt();
@@ -46,7 +51,8 @@ struct Coefficients {
     up: Vec<[f64; 2]>,
 }
 
-/// The functions and differences of one register of pairs, for degrees $n - 1/2$, $n = 0 \dots n_\text{max}$.
+/// The functions and differences of one register of pairs, for degrees $n - 1/2$,
+/// $n = 0 \dots n_\text{max}$.
 #[derive(Debug)]
 pub(crate) struct Ladder {
     n_max: usize,
@@ -54,10 +60,12 @@ pub(crate) struct Ladder {
     coefficients: Coefficients,
 }
 
-/// Downward recurrence starts where the unwanted solution will have shrunk by $e^{-2 \cdot 18}$ when it arrives.
+/// Downward recurrence starts where the unwanted solution will have shrunk by $e^{-2 \cdot 18}$
+/// when it arrives.
 const DECAY: f64 = 18.0;
 
-/// Steps between two rescalings of the downward recurrence; at `DECAY` each, no overflow in between.
+/// Steps between two rescalings of the downward recurrence; at `DECAY` each, no overflow in
+/// between.
 const RESCALE: usize = 16;
 
 impl Ladder {
@@ -81,8 +89,9 @@ impl Ladder {
         }
     }
 
-    /// Fills `q[n]` $= Q_{n-1/2}(1 + h)$ and `d[n]` $= D_n$ for $n \le n_\text{max}$, up to the common factor returned,
-    /// by which both have yet to be multiplied. `q0`, `d0` are the values of [`start`].
+    /// Fills `q[n]` $= Q_{n-1/2}(1 + h)$ and `d[n]` $= D_n$ for $n \le n_\text{max}$, up to the
+    /// common factor returned, by which both have yet to be multiplied. `q0`, `d0` are the values
+    /// of [`start`].
     #[inline(always)]
     pub fn fill<S: Simd>(
         &self,
@@ -163,7 +172,8 @@ impl Ladder {
             d_n = d_n / q_n;
             q_n = Lanes::splat(h.0, 1.0);
         }
-        // Room for growth by exp(n_max acosh chi) on the way down, made again where that exceeds what doubles hold.
+        // Room for growth by exp(n_max acosh chi) on the way down, made again where that exceeds
+        // what doubles hold.
         let tiny = Lanes::splat(h.0, 1e-250);
         let (large, one) = (Lanes::splat(h.0, 1e250), Lanes::splat(h.0, 1.0));
         let shrink = Lanes::splat(h.0, 1e-300);
@@ -201,10 +211,12 @@ pub struct Toroidal {
 }
 
 impl Toroidal {
-    /// Functions of $\chi = 1 + h$; `h` (given instead of $\chi$ so that arguments near 1 keep their digits)
-    /// is positive and finite, or the values are NaN. Values below the smallest double are zero.
+    /// Functions of $\chi = 1 + h$; `h` (given instead of $\chi$ so that arguments near 1 keep
+    /// their digits) is positive and finite, or the values are NaN. Values below the smallest
+    /// double are zero.
     ///
-    /// Relative error below `1e-13` for $n \le 1000$ and every $h$ (tested against 40-digit values).
+    /// Relative error below `1e-13` for $n \le 1000$ and every $h$ (tested against 40-digit
+    /// values).
     pub fn new(h: f64, n_max: usize) -> Self {
         if !(h > 0.0 && h.is_finite()) {
             let nan = vec![f64::NAN; n_max + 1];
@@ -214,7 +226,8 @@ impl Toroidal {
                 d: nan,
             };
         }
-        // exp(-690) is where doubles end; beyond it the functions underflow, and the ladder would overflow.
+        // exp(-690) is where doubles end; beyond it the functions underflow, and the ladder would
+        // overflow.
         let decay = 2.0 * (0.5 * h).sqrt().asinh();
         let reach = (690.0 / decay).min(n_max as f64) as usize;
         struct Fill<'a>(&'a Ladder, f64, &'a mut [f64], &'a mut [f64]);
@@ -258,7 +271,8 @@ impl Toroidal {
     /// The derivative of order `k` $\le 3$ with respect to $\chi$: with $\nu = n - 1/2$,
     /// $(\chi^2-1) Q' = -\nu (D_{n-1} - h Q)$, $(1-\chi^2) Q'' = 2\chi Q' - \nu(\nu+1) Q$ and
     /// $(1-\chi^2) Q''' = 4\chi Q'' - (\nu(\nu+1) - 2) Q'$ (DLMF 14.10.5 and Legendre's equation).
-    /// The associated functions are $Q^m_\nu = (\chi^2-1)^{m/2} \\, d^m Q_\nu / d\chi^m$ in DLMF's sign.
+    /// The associated functions are $Q^m_\nu = (\chi^2-1)^{m/2} \\, d^m Q_\nu / d\chi^m$ in DLMF's
+    /// sign.
     ///
     /// `None` for `k > 3`.
     pub fn derivative(&self, n: usize, k: usize) -> Option<f64> {

@@ -13,7 +13,7 @@ use nalgebra::{Point3, Vector3};
 
 /// Stokeslets and targets of the shared case.
 fn case() -> (Vec<Stokeslet>, Vec<Point3<f64>>) {
-    let text = include_str!("data/cases/thesis-single-body.toml");
+    let text = include_str!("../data/cases/thesis-single-body.toml");
     let case = Case::parse(text, "thesis-single-body.toml").expect("a valid case");
     let test = case.test.as_ref().expect("a test flow");
     let stokeslets = test.stokeslets.iter();

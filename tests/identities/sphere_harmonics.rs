@@ -135,7 +135,7 @@ fn difference(
 
 /// Eigenvalues `[l][s_v, s_w, s_x, d_v, d_w, d_x]`.
 fn eigenvalues() -> Vec<Vec<Option<f64>>> {
-    include_str!("data/sphere_harmonics.csv")
+    include_str!("../data/sphere_harmonics.csv")
         .lines()
         .filter(|line| !line.starts_with(['#', 'l']))
         .map(|line| line.split(',').skip(1).map(|x| x.parse().ok()).collect())

@@ -21,7 +21,7 @@ fn near(a: impl Into<Vector3<f64>>, b: Vector3<f64>, tolerance: f64) {
 /// The case file's way to the motion of a sinking capsule, and the mobility matrix's.
 #[test]
 fn a_tilted_capsule_sinks_as_its_mobility_says() {
-    let text = include_str!("data/cases/capsule.toml");
+    let text = include_str!("../data/cases/capsule.toml");
     let body = &report(&format!("viscosity = 3.0\n{text}")).bodies[0];
     let curve = std::sync::Arc::new(Capsule::new(0.5, 2.0).expect("a capsule"));
     let matrices = RigidBodyMatrices::to_tolerance(curve, 1e-10, &Silent).expect("matrices");
@@ -38,7 +38,7 @@ fn a_tilted_capsule_sinks_as_its_mobility_says() {
 
 #[test]
 fn a_rod_in_shear_turns_in_the_laboratory_too() {
-    let report = report(include_str!("data/cases/jeffery.toml"));
+    let report = report(include_str!("../data/cases/jeffery.toml"));
     let exact = 0.5 - 15.0 / 34.0 * (0.64 - 0.36);
     near(
         report.bodies[0].angular_velocity,
@@ -86,7 +86,7 @@ fn a_squirmer_in_shear_is_carried_along() {
 /// On the axis a squirmer's flow is a short sum (Blake 1971), also a thousandth of a radius above its pole.
 #[test]
 fn next_to_a_squirmer_the_flow_is_as_exact_as_elsewhere() {
-    let report = report(include_str!("data/cases/squirmer.toml"));
+    let report = report(include_str!("../data/cases/squirmer.toml"));
     let [probe, ..] = &report.probes[..] else {
         panic!("no probes");
     };

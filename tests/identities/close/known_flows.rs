@@ -20,7 +20,7 @@ const BARS: [f64; 3] = [1e-11, 1e-9, 1e-8];
 
 /// The point forces inside the thesis's spheroid.
 fn thesis() -> Stokeslets {
-    let text = include_str!("../data/cases/thesis-single-body.toml");
+    let text = include_str!("../../data/cases/thesis-single-body.toml");
     let case = Case::parse(text, "thesis-single-body.toml").expect("a valid case");
     let test = case.test.expect("a test flow");
     let stokeslet = |s: &Located<case::Stokeslet>| Stokeslet {

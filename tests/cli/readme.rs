@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-const README: &str = include_str!("../README.md");
+const README: &str = include_str!("../../README.md");
 
 /// The first block of a language in the README.
 fn block(language: &str) -> &'static str {
@@ -40,7 +40,7 @@ fn the_first_case_and_its_answer() {
     let case = Path::new("examples/cases/first.toml");
     assert_eq!(
         block("toml"),
-        include_str!("../examples/cases/first.toml"),
+        include_str!("../../examples/cases/first.toml"),
         "the README shows another case than {}",
         case.display()
     );
@@ -70,7 +70,7 @@ fn the_plane_and_output_are_read() {
 
 #[test]
 fn the_library_example_is_that_of_the_front_page() {
-    let front = include_str!("../src/lib.rs");
+    let front = include_str!("../../src/lib.rs");
     let code: String = front
         .lines()
         .skip_while(|line| *line != "//! ```")

@@ -4,7 +4,7 @@ use axistokes::body::special::toroidal::Toroidal;
 
 #[test]
 fn functions_differences_and_derivatives_match_high_precision() {
-    let table = include_str!("data/toroidal.csv");
+    let table = include_str!("../data/toroidal.csv");
     let mut rows = 0;
     let mut worst = [(0.0f64, String::new()), (0.0, String::new())];
     for line in table.lines().filter(|l| !l.starts_with('#')).skip(1) {

@@ -1,0 +1,12 @@
+//! From a case to its answer and its files, through the command line and the library.
+
+mod converge;
+mod examples;
+mod free_bodies;
+mod many_bodies;
+mod picture;
+mod readme;
+mod regressions;
+mod resistance;
+mod solved;
+mod vtk;

@@ -42,7 +42,7 @@ enum Kind {
 /// Reads `[background]`.
 pub(super) fn read_background(node: Node<'_>) -> Result<Background, CaseError> {
     let section = Section::open(node)?;
-    let kind = section.required("kind", "one of uniform, shear, linear")?;
+    let kind = section.kind("one of uniform, shear, linear")?;
     let kinds = [
         ("uniform", Kind::Uniform),
         ("shear", Kind::Shear),

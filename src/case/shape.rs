@@ -84,7 +84,7 @@ pub(super) fn read_shapes(
 fn read_shape(node: &Node<'_>, folder: &Path) -> Result<ShapeSpec, CaseError> {
     let section = Section::open(node.clone())?;
     let kinds: Vec<&str> = KINDS.iter().map(|(kind, _)| *kind).collect();
-    let kind = section.required("kind", &format!("one of {}", kinds.join(", ")))?;
+    let kind = section.kind(&format!("one of {}", kinds.join(", ")))?;
     let choices: Vec<_> = KINDS.iter().map(|pair| (pair.0, *pair)).collect();
     let (kind, known) = kind.choice(&choices)?;
     section.check(known)?;

@@ -112,6 +112,26 @@ fn unknown_keys() {
         ),
         ("[probes]", "[probe]", &["case.toml:14:", "`probes`"]),
         (
+            "[[bodies]]",
+            "[[body]]",
+            &["case.toml:5:", "unknown key body", "did you mean `bodies`"],
+        ),
+        (
+            "[shapes.ball]",
+            "[shape.ball]",
+            &["case.toml:1:", "did you mean `shapes`"],
+        ),
+        (
+            "kind =",
+            "kinds =",
+            &["case.toml:2:", "unknown key shapes.ball.kinds", "`kind`"],
+        ),
+        (
+            "velocity =",
+            "velocities =",
+            &["case.toml:9:", "bodies[0].velocities", "`velocity`"],
+        ),
+        (
             "tolerance = 1e-8",
             "tolerance = 1e-8\ncolour = 3",
             &["case.toml:13:", "accuracy.colour", "known: tolerance"],

@@ -1,6 +1,7 @@
 //! Bodies: a shape, where it is, and what is imposed on it.
 
 use super::node::Node;
+use super::orientation::{BodyOrientation, read_orientation};
 use super::section::Section;
 use super::shape::ShapeSpec;
 use super::slip::{Slip, read_slip};
@@ -12,6 +13,7 @@ const KEYS: &[&str] = &[
     "shape",
     "center",
     "axis",
+    "orientation",
     "scale",
     "velocity",
     "angular_velocity",
@@ -30,7 +32,10 @@ pub struct Body {
     pub shape: String,
     /// Where the origin of the shape lies; the origin if not given.
     pub center: [f64; 3],
-    /// Direction of the symmetry axis, of length one; z if not given.
+    /// How it lies in space; its axis is z if not given.
+    pub orientation: BodyOrientation,
+    /// Direction of the symmetry axis, of length one. It is always that of `orientation`: for
+    /// whoever needs no rotation about the axis.
     pub axis: [f64; 3],
     /// How many times larger the body is than its shape, positive; 1 if not given.
     pub scale: f64,
@@ -87,12 +92,12 @@ fn read_body(
         let hint = hint(&shape, &names);
         return Err(shape_node.expected(format_args!("the name of a shape of this case{hint}")));
     };
+    let orientation = read_orientation(&section)?;
     Ok(Body {
         line,
         center: section.read("center", Node::vector)?.unwrap_or_default(),
-        axis: section
-            .read("axis", Node::direction)?
-            .unwrap_or([0.0, 0.0, 1.0]),
+        orientation,
+        axis: orientation.axis(),
         scale: section
             .read("scale", |node| node.positive("a scale"))?
             .unwrap_or(1.0),

@@ -241,6 +241,21 @@ fn numbers_out_of_range() {
             &["case.toml:8:", "axis", "zero"],
         ),
         (
+            "axis = [0.0, 0.0, 1.0]",
+            "orientation = [0, 0, 0, 0.0]",
+            &["case.toml:8:", "orientation", "any length but zero"],
+        ),
+        (
+            "axis = [0.0, 0.0, 1.0]",
+            "orientation = [1, nan, 0, 0]",
+            &["case.toml:8:", "orientation", "nan", "four finite numbers"],
+        ),
+        (
+            "axis = [0.0, 0.0, 1.0]",
+            "orientation = [0, 0, 1]",
+            &["case.toml:8:", "four finite numbers", "[w, x, y, z]"],
+        ),
+        (
             "velocity = [0.0, 0.0, 1.0]",
             "velocity = [0, inf, 0]",
             &["case.toml:9:", "velocity"],
@@ -351,6 +366,14 @@ fn bodies_and_shapes_that_do_not_fit() {
             "velocity = [0.0, 0.0, 1.0]",
             "velocity = [0.0, 0.0, 1.0]\ntorque = [0, 0, 0]",
             &["case.toml:10:", "both", "velocity", "torque"],
+        ),
+        (
+            "velocity = [0.0, 0.0, 1.0]",
+            "orientation = [1, 0, 0, 0]",
+            &[
+                "case.toml:9:",
+                "both bodies[0].axis and bodies[0].orientation",
+            ],
         ),
         (
             "kind = \"sphere\"\nradius = 1.0",

@@ -1,6 +1,8 @@
 //! The project's cases are read whole, and those of later issues refused by name; mutations never panic.
 
-use axistokes::case::{Accuracy, Background, Case, Motion, ShapeSpec, Slip, Steps};
+use axistokes::case::{
+    Accuracy, Background, Body, BodyOrientation, Case, Motion, ShapeSpec, Slip, Steps,
+};
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -117,6 +119,35 @@ fn defaults_are_documented_ones() {
     };
     assert_eq!(case.bodies[0].motion.value, held);
     assert_eq!(case.check_supported(), Ok(()));
+}
+
+/// The one body of a case, which has these lines.
+fn body(lines: &str) -> Body {
+    let text =
+        format!("shapes.a = {{ kind = 'sphere', radius = 1 }}\n[[bodies]]\nshape = 'a'\n{lines}");
+    let mut case = Case::parse(&text, "body.toml").unwrap();
+    case.bodies.remove(0)
+}
+
+#[test]
+fn an_orientation_is_a_quaternion_of_any_length() {
+    let turned = body("orientation = [1e3, 0, 1e3, 0]");
+    let half = 0.5_f64.sqrt();
+    let BodyOrientation::Quaternion(quaternion) = turned.orientation else {
+        panic!("{:?}", turned.orientation);
+    };
+    for (found, exact) in quaternion.iter().zip([half, 0.0, half, 0.0]) {
+        assert!((found - exact).abs() < 1e-15);
+    }
+    for (found, exact) in turned.axis.iter().zip([1.0, 0.0, 0.0]) {
+        assert!((found - exact).abs() < 1e-15);
+    }
+    let along = body("axis = [2, 0, 0]");
+    let axis = [1.0, 0.0, 0.0];
+    assert_eq!(
+        (along.orientation, along.axis),
+        (BodyOrientation::Axis(axis), axis)
+    );
 }
 
 #[test]

@@ -165,6 +165,24 @@ impl<'a> Node<'a> {
         self.components("three finite numbers (at most 1e30 in magnitude), [x, y, z]")
     }
 
+    /// Three components, each a finite number or, as `None`, the word "free".
+    pub(super) fn vector_or_free(&self) -> Result<[Option<f64>; 3], CaseError> {
+        let what = "three components [x, y, z], each a finite number (at most 1e30 in magnitude) \
+                    or \"free\"";
+        let items: &[_; 3] = (self.items(what)?.try_into()).map_err(|_| self.expected(what))?;
+        let mut components = [None; 3];
+        for (component, item) in components.iter_mut().zip(items) {
+            *component = match item.get_ref() {
+                DeValue::String(word) if word == "free" => None,
+                value => {
+                    let number = as_number(value).filter(|x| x.abs() <= LARGEST);
+                    Some(number.ok_or_else(|| self.expected(what))?)
+                }
+            };
+        }
+        Ok(components)
+    }
+
     /// Three finite numbers, not all zero, scaled to length one.
     pub(super) fn direction(&self) -> Result<[f64; 3], CaseError> {
         normalized(self.vector()?).ok_or_else(|| self.expected("a vector of any length but zero"))

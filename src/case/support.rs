@@ -7,6 +7,7 @@ pub(super) fn check(case: &Case) -> Result<(), CaseError> {
     let mut missing: Vec<(usize, String)> = Vec::new();
     let time = case.time.as_ref().map(|time| time.line);
     missing.extend(time.map(|line| (line, "[time]".to_owned())));
+    missing.extend(mixed(case));
     if case.test.is_some() {
         let line = case.background.as_ref().map(|s| s.line);
         missing.extend(line.map(|line| (line, "[background] beside [test]".to_owned())));
@@ -18,6 +19,13 @@ pub(super) fn check(case: &Case) -> Result<(), CaseError> {
     };
     let names: Vec<String> = missing.into_iter().map(|(_, name)| name).collect();
     Err(case.error(line, format!("not supported yet: {}", names.join(", "))))
+}
+
+/// The first body that is moved in some components and free in others.
+fn mixed(case: &Case) -> Option<(usize, String)> {
+    let body = case.bodies.iter().find(|body| body.is_mixed())?;
+    let name = "a body that is imposed in some components and free in others";
+    Some((body.motion.line, name.to_owned()))
 }
 
 /// The first body's motion, if all bodies are free: their equation has no single layer alone.

@@ -364,8 +364,43 @@ fn bodies_and_shapes_that_do_not_fit() {
         ),
         (
             "velocity = [0.0, 0.0, 1.0]",
-            "velocity = [0.0, 0.0, 1.0]\ntorque = [0, 0, 0]",
-            &["case.toml:10:", "both", "velocity", "torque"],
+            "velocity = [0.0, 0.0, 1.0]\nforce = [0, 0, 0]",
+            &["case.toml:10:", "both", "velocity", "force", "\"free\""],
+        ),
+        (
+            "velocity = [0.0, 0.0, 1.0]",
+            "torque = [0, 0, 0]\nangular_velocity = [0, 0, 1]",
+            &["case.toml:10:", "both", "angular_velocity", "torque"],
+        ),
+        (
+            "velocity = [0.0, 0.0, 1.0]",
+            "force = [0, 1, 0]\nvelocity = [0, 0, \"free\"]",
+            &[
+                "case.toml:9:",
+                "bodies[0].force = [0, 1, 0]",
+                "zero as its y component",
+                "bodies[0].velocity imposes",
+            ],
+        ),
+        (
+            "velocity = [0.0, 0.0, 1.0]",
+            "torque = [0, 0, 2]\nangular_velocity = [\"free\", 0, 0]",
+            &["case.toml:9:", "torque", "zero as its z component"],
+        ),
+        (
+            "velocity = [0.0, 0.0, 1.0]",
+            "velocity = [0, 0, \"fre\"]",
+            &["case.toml:9:", "velocity", "or \"free\""],
+        ),
+        (
+            "velocity = [0.0, 0.0, 1.0]",
+            "velocity = \"free\"",
+            &["case.toml:9:", "velocity", "[x, y, z]"],
+        ),
+        (
+            "velocity = [0.0, 0.0, 1.0]",
+            "force = [0, 0, \"free\"]",
+            &["case.toml:9:", "force", "three finite numbers"],
         ),
         (
             "velocity = [0.0, 0.0, 1.0]",
@@ -485,6 +520,14 @@ fn what_is_not_built_is_refused_by_name() {
             &[
                 "case.toml:9:",
                 "not supported yet: the single-layer formulation of a free body",
+            ],
+        ),
+        (
+            "velocity = [0.0, 0.0, 1.0]",
+            "velocity = [0, 0, \"free\"]",
+            &[
+                "case.toml:9:",
+                "not supported yet: a body that is imposed in some components and free in others",
             ],
         ),
         // an error inside a section that is not built comes first

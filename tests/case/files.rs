@@ -1,7 +1,7 @@
 //! The project's cases are read whole, and those of later issues refused by name; mutations never panic.
 
 use axistokes::case::{
-    Accuracy, Background, Body, BodyOrientation, Case, Motion, ShapeSpec, Slip, Steps,
+    Accuracy, Background, Body, BodyOrientation, Case, Component, Motion, ShapeSpec, Slip, Steps,
 };
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
@@ -148,6 +148,60 @@ fn an_orientation_is_a_quaternion_of_any_length() {
         (along.orientation, along.axis),
         (BodyOrientation::Axis(axis), axis)
     );
+}
+
+#[test]
+fn components_are_imposed_or_free() {
+    use Component::{Free, Imposed};
+    let rest = Imposed(0.0);
+    let unloaded = Free(0.0);
+    let cases = [
+        ("", [rest; 6]),
+        (
+            "velocity = [1, 2, 3]",
+            [Imposed(1.0), Imposed(2.0), Imposed(3.0), rest, rest, rest],
+        ),
+        (
+            "torque = [1, 2, 3]",
+            [
+                unloaded,
+                unloaded,
+                unloaded,
+                Free(1.0),
+                Free(2.0),
+                Free(3.0),
+            ],
+        ),
+        (
+            "velocity = [0, 5, 'free']\nforce = [0, 0, -1]",
+            [rest, Imposed(5.0), Free(-1.0), rest, rest, rest],
+        ),
+        (
+            "velocity = [0, 0, 0]\ntorque = [0, 0, 0]",
+            [rest, rest, rest, unloaded, unloaded, unloaded],
+        ),
+        (
+            "force = [1, 0, 0]\nangular_velocity = [0, 0, 0]",
+            [Free(1.0), unloaded, unloaded, rest, rest, rest],
+        ),
+        (
+            "angular_velocity = ['free', 0, 0]",
+            [rest, rest, rest, unloaded, rest, rest],
+        ),
+    ];
+    for (lines, components) in cases {
+        let body = body(lines);
+        assert_eq!(body.components, components, "{lines}");
+        let free = components.iter().filter(|c| matches!(c, Free(_))).count();
+        assert_eq!(body.is_mixed(), free != 0 && free != 6, "{lines}");
+    }
+    let all_free =
+        body("velocity = ['free', 'free', 'free']\nforce = [1, 0, 0]\ntorque = [0, 2, 0]");
+    let motion = Motion::Free {
+        force: [1.0, 0.0, 0.0],
+        torque: [0.0, 2.0, 0.0],
+    };
+    assert_eq!(all_free.motion.value, motion);
 }
 
 #[test]

@@ -100,6 +100,11 @@ pub struct Case {
     pub background: Option<Located<Background>>,
     /// How accurate the answer must be; a tolerance of 1e-8 if not given.
     pub accuracy: Accuracy,
+    /// Tolerance of sums and iterations if the discretisation is chosen by hand; `None` leaves it
+    /// to the solver, and is always so if `accuracy` is a tolerance.
+    pub tolerance_by_hand: Option<f64>,
+    /// Whether errors are estimated, which takes a second solution; true if not given.
+    pub estimate: bool,
     /// How the linear system is solved.
     pub solver: SolverOptions,
     /// Where velocity and pressure are wanted.
@@ -139,7 +144,9 @@ impl Case {
     fn from_root(root: &Section<'_>, path: &Path) -> Result<Self, CaseError> {
         let missing = |what| root.node.source.error(None, what);
         let viscosity = root.read("viscosity", |node| node.positive("a viscosity"))?;
-        let accuracy = root.read("accuracy", |node| accuracy::read_accuracy(node.clone()))?;
+        let accuracy = root
+            .read("accuracy", |node| accuracy::read_accuracy(node.clone()))?
+            .unwrap_or_default();
         let solver = root.read("solver", |node| solver::read_solver(node.clone()))?;
         let background = root.read("background", |node| {
             Ok(node.located(background::read_background(node.clone())?))
@@ -172,7 +179,9 @@ impl Case {
             bodies: body::read_bodies(&bodies, &shapes)?,
             shapes,
             background,
-            accuracy: accuracy.unwrap_or_default(),
+            accuracy: accuracy.accuracy,
+            tolerance_by_hand: accuracy.tolerance_by_hand,
+            estimate: accuracy.estimate.unwrap_or(true),
             solver: solver.unwrap_or_default(),
             probes: probes.unwrap_or_default(),
             test,
@@ -199,8 +208,14 @@ impl Case {
         &self.shapes[&body.shape]
     }
 
-    /// The tolerance asked for, unless the discretisation was chosen by hand.
+    /// The tolerance asked for. If the discretisation was chosen by hand, it is that of sums and
+    /// iterations, and `None` if not given.
     pub fn tolerance(&self) -> Option<f64> {
+        self.promised_tolerance().or(self.tolerance_by_hand)
+    }
+
+    /// The tolerance that the answer must meet: none if the discretisation was chosen by hand.
+    pub fn promised_tolerance(&self) -> Option<f64> {
         match self.accuracy {
             Accuracy::Tolerance(tolerance) => Some(tolerance),
             Accuracy::ByHand { .. } => None,

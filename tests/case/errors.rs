@@ -298,7 +298,17 @@ fn accuracy_that_cannot_be_had() {
         (
             "tolerance = 1e-8",
             "tolerance = 1e-8\npanels = 8",
-            &["case.toml:13:", "both", "panels"],
+            &["case.toml:11:", "accuracy.order", "missing", "all three"],
+        ),
+        (
+            "tolerance = 1e-8",
+            "tolerance = 1e-15\npanels = 8\norder = 16\nmodes = 4",
+            &["case.toml:12:", "tolerance", "1e-14"],
+        ),
+        (
+            "tolerance = 1e-8",
+            "estimate = 0",
+            &["case.toml:12:", "accuracy.estimate", "true or false"],
         ),
         (
             "tolerance = 1e-8",

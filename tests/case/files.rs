@@ -205,6 +205,32 @@ fn components_are_imposed_or_free() {
 }
 
 #[test]
+fn a_tolerance_by_hand_is_not_promised() {
+    let case = |accuracy: &str| {
+        let text = format!(
+            "shapes.a = {{ kind = 'sphere', radius = 1 }}\nbodies = [{{ shape = 'a' }}]\n[accuracy]\n{accuracy}"
+        );
+        Case::parse(&text, "accuracy.toml").unwrap()
+    };
+    let tolerances = |case: &Case| (case.tolerance(), case.promised_tolerance());
+    let by_hand = "panels = 8\norder = 16\nmodes = 4\n";
+    assert_eq!(
+        tolerances(&case("tolerance = 1e-6")),
+        (Some(1e-6), Some(1e-6))
+    );
+    assert_eq!(tolerances(&case(by_hand)), (None, None));
+    let both = case(&format!("{by_hand}tolerance = 1e-5\nestimate = false"));
+    assert_eq!(tolerances(&both), (Some(1e-5), None));
+    assert_eq!((both.tolerance_by_hand, both.estimate), (Some(1e-5), false));
+    let alone = case("estimate = false");
+    assert_eq!(
+        (alone.accuracy, alone.estimate),
+        (Accuracy::default(), false)
+    );
+    assert!(case(by_hand).estimate);
+}
+
+#[test]
 fn line_ends_of_other_systems_are_read() {
     let text =
         "\u{feff}[shapes.a]\r\nkind = 'sphere'\r\nradius = 1\r\n[[bodies]]\r\nshape = 'a'\r\n";

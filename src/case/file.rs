@@ -13,8 +13,15 @@ pub fn read_text(path: &Path) -> Result<String, CaseError> {
     check_regular(path).map_err(|message| CaseError::new(path.display(), None, message))?;
     let fail = |message: String| CaseError::new(path.display(), None, message);
     let file = File::open(path).map_err(|e| fail(describe(&e)))?;
+    text_of(file, path)
+}
+
+/// The text that `reader` yields, at most [`LARGEST_FILE`] bytes; `path` names it in errors.
+pub(super) fn text_of(reader: impl Read, path: &Path) -> Result<String, CaseError> {
+    let fail = |message: String| CaseError::new(path.display(), None, message);
     let mut bytes = Vec::new();
-    file.take(LARGEST_FILE + 1)
+    reader
+        .take(LARGEST_FILE + 1)
         .read_to_end(&mut bytes)
         .map_err(|e| fail(describe(&e)))?;
     check_size(bytes.len() as u64).map_err(fail)?;
@@ -43,9 +50,7 @@ pub fn check_regular(path: &Path) -> Result<(), String> {
 fn check_size(bytes: u64) -> Result<(), String> {
     if bytes > LARGEST_FILE {
         let limit = LARGEST_FILE >> 20;
-        return Err(format!(
-            "too large ({bytes} bytes), expected at most {limit} MiB"
-        ));
+        return Err(format!("too large, expected at most {limit} MiB"));
     }
     Ok(())
 }

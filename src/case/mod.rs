@@ -64,6 +64,7 @@ pub use slip::Slip;
 pub use solver::{Formulation, Method, SolverOptions};
 pub use time::{Steps, TimeSpan};
 
+use file::text_of;
 use section::Section;
 use source::Source;
 use std::collections::BTreeMap;
@@ -120,9 +121,15 @@ pub struct Case {
 }
 
 impl Case {
-    /// Reads a case file. Anything but a regular UTF-8 file of at most [`LARGEST_FILE`] bytes is refused unread.
+    /// Reads a case file. Anything but a regular UTF-8 file of at most [`LARGEST_FILE`] bytes is
+    /// refused unread. The path `-` stands for standard input: the case is then named `stdin`, and
+    /// lies in the current folder.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, CaseError> {
         let path = path.as_ref();
+        if path == Path::new("-") {
+            let stdin = Path::new("stdin");
+            return Self::parse(&text_of(std::io::stdin(), stdin)?, stdin);
+        }
         Self::parse(&read_text(path)?, path)
     }
 

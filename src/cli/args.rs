@@ -86,7 +86,7 @@ pub enum Command {
 /// Arguments of `solve`.
 #[derive(Args, Debug)]
 pub struct Solve {
-    /// The case file.
+    /// The case file; - reads the case from standard input.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
     /// Print one JSON object and nothing else on stdout.
@@ -131,7 +131,7 @@ impl From<PictureOf> for Quantity {
 /// Arguments of `resistance`.
 #[derive(Args, Debug)]
 pub struct Resistance {
-    /// The case file; only its shapes, accuracy and viscosity matter.
+    /// The case file, or - for standard input; only its shapes, accuracy and viscosity matter.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
     /// Print one JSON object and nothing else on stdout.

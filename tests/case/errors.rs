@@ -1,6 +1,7 @@
 //! Bad input of every kind: exit status 2 within a second, one clear line on stderr, nothing written.
 
 use std::fs::{self, File};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
@@ -643,6 +644,60 @@ fn devices_and_pipes() {
     let made = Command::new("mkfifo").arg(&pipe).status();
     if made.is_ok_and(|status| status.success()) {
         assert_refused_file(&folders, &pipe, &["not a regular file"]);
+    }
+}
+
+/// What the program says of a case on its standard input, with `folder` as the current one.
+fn solve_stdin(folder: &Path, text: &[u8]) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_axistokes"))
+        .args(["solve", "--json", "-"])
+        .current_dir(folder)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // the program may refuse the text before it has read all of it
+    let _ = child.stdin.take().unwrap().write_all(text);
+    child.wait_with_output().unwrap()
+}
+
+#[test]
+fn a_case_from_standard_input() {
+    let folders = Folders::new("stdin");
+    let output = solve_stdin(&folders.run, SPHERE.as_bytes());
+    assert!(output.status.success(), "{output:?}");
+    assert!(output.stdout.starts_with(b"{"));
+
+    fs::write(
+        folders.run.join("curve.csv"),
+        "0,1\n0.7,0.7\n1,0\n0.7,-0.7\n0,-1\n",
+    )
+    .unwrap();
+    let profile =
+        "kind = \"profile\"\nfile = \"curve.csv\"\n[[bodies]]\nshape = \"ball\"\nsize = 1";
+    let large = vec![b'#'; (4 << 20) + 1];
+    let wrong = [
+        (
+            format!("[shapes.ball]\n{profile}").into_bytes(),
+            "stdin:6: unknown key bodies[0].size",
+        ),
+        (
+            SPHERE.replace("1e-8", "2").into_bytes(),
+            "stdin:12: accuracy.tolerance",
+        ),
+        (b"a\n\xff".to_vec(), "stdin:2: not UTF-8"),
+        (Vec::new(), "stdin: the file is empty"),
+        (large, "stdin: too large, expected at most 4 MiB"),
+    ];
+    for (text, message) in wrong {
+        let output = solve_stdin(&folders.run, &text);
+        let line = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{line}");
+        assert!(
+            line.starts_with(message) && line.lines().count() == 1,
+            "{line}"
+        );
     }
 }
 

@@ -47,6 +47,7 @@ mod source;
 mod suggest;
 mod support;
 mod time;
+mod warnings;
 
 pub use accuracy::{Accuracy, MOST_MODES, MOST_PANELS, SMALLEST_TOLERANCE};
 pub use background::Background;
@@ -227,6 +228,11 @@ impl Case {
             Accuracy::Tolerance(tolerance) => Some(tolerance),
             Accuracy::ByHand { .. } => None,
         }
+    }
+
+    /// What is valid in this case but seldom meant, one line each.
+    pub fn warnings(&self) -> Vec<String> {
+        warnings::warnings(self)
     }
 
     /// Refuses, by name, the parts of the format that cannot be solved yet.

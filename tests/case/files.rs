@@ -231,6 +231,38 @@ fn a_tolerance_by_hand_is_not_promised() {
 }
 
 #[test]
+fn what_is_seldom_meant_is_warned_of() {
+    let warnings = |lines: &str| {
+        let text = format!(
+            "shapes.a = {{ kind = 'sphere', radius = 1 }}\n[[bodies]]\nshape = 'a'\n{lines}"
+        );
+        Case::parse(&text, "warned.toml").unwrap().warnings()
+    };
+    let none: [&str; 0] = [];
+    let slip = "slip = { kind = 'squirmer', b = [1] }";
+    let held = "body 1 (line 2) has a slip but neither force nor velocity, and is held: \
+                it pumps fluid; give force = [0, 0, 0] to let it swim";
+    assert_eq!(warnings(slip), [held]);
+    assert_eq!(warnings(&format!("{slip}\nforce = [0, 0, 0]")), none);
+    assert_eq!(warnings(&format!("{slip}\nvelocity = [0, 0, 0]")), none);
+    assert_eq!(
+        warnings(&format!(
+            "force = [0, 0, 1]\n[[bodies]]\nshape = 'a'\n{slip}"
+        ))
+        .len(),
+        1
+    );
+
+    let still = ["nothing moves: no velocity, force, slip or background"];
+    assert_eq!(warnings(""), still);
+    assert_eq!(warnings("velocity = [0, 0, 'free']"), still);
+    assert_eq!(warnings("torque = [0, 0, 1]"), none);
+    assert_eq!(warnings("[background]\nkind = 'shear'\nrate = 1"), none);
+    let test = "[test]\nstokeslets = [{ at = [0, 0, 0], force = [0, 0, 1] }]\n[probes]\npoints = [[0, 0, 2]]";
+    assert_eq!(warnings(test), none);
+}
+
+#[test]
 fn line_ends_of_other_systems_are_read() {
     let text =
         "\u{feff}[shapes.a]\r\nkind = 'sphere'\r\nradius = 1\r\n[[bodies]]\r\nshape = 'a'\r\n";

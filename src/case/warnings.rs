@@ -2,26 +2,32 @@
 
 use super::{Body, Case, Component};
 
-/// One line for everything in the case that is valid but seldom meant.
-pub(super) fn warnings(case: &Case) -> Vec<String> {
-    // the known flow takes the place of all that is imposed
-    if case.test.is_some() {
-        return Vec::new();
+impl Case {
+    /// What is valid in this case but seldom meant, one line each.
+    pub fn warnings(&self) -> Vec<String> {
+        // the known flow takes the place of all that is imposed
+        if self.test.is_some() {
+            return Vec::new();
+        }
+        let mut warnings: Vec<String> = (1..)
+            .zip(&self.bodies)
+            .filter(|(_, body)| body.slip.is_some() && !body.motion_given)
+            .map(|(number, body)| held(number, body))
+            .collect();
+        if self.background.is_none() && self.bodies.iter().all(does_nothing) {
+            warnings.push("nothing moves: no velocity, force, slip or background".to_owned());
+        }
+        warnings
     }
-    let held = |(number, body): (usize, &Body)| {
-        (body.slip.is_some() && !body.motion_given).then(|| {
-            format!(
-                "body {number} (line {}) has a slip but neither force nor velocity, and is held: \
-                 it pumps fluid; give force = [0, 0, 0] to let it swim",
-                body.line
-            )
-        })
-    };
-    let mut warnings: Vec<String> = (1..).zip(&case.bodies).filter_map(held).collect();
-    if case.background.is_none() && case.bodies.iter().all(does_nothing) {
-        warnings.push("nothing moves: no velocity, force, slip or background".to_owned());
-    }
-    warnings
+}
+
+/// The warning for a body that is held for want of a word about its motion.
+fn held(number: usize, body: &Body) -> String {
+    format!(
+        "body {number} (line {}) has a slip but neither force nor velocity, and is held: \
+         it pumps fluid; give force = [0, 0, 0] to let it swim",
+        body.line
+    )
 }
 
 /// Whether a body has no slip, and neither a velocity nor a load that is not zero.

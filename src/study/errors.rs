@@ -1,8 +1,10 @@
 //! Errors over panels and modes.
 
+use super::error::StudyError;
 use super::plan::MEMORY;
 use super::setup::{Errors, Setup};
-use super::{StudyError, bytes, spheroid};
+use super::size::bytes;
+use super::spheroid::spheroid;
 use stokes_body::dirichlet::{DirichletSolver, Formulation};
 use stokes_body::progress::{Progress, Silent};
 use stokes_body::surface::SurfaceModes;

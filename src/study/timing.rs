@@ -4,10 +4,12 @@ use std::time::Instant;
 
 use nalgebra::Point3;
 
+use super::error::StudyError;
 use super::plan::{MEMORY, MODES_PER_PANEL};
 use super::power_law::PowerLaw;
 use super::setup::Setup;
-use super::{StudyError, bytes, points, spheroid};
+use super::size::{bytes, points};
+use super::spheroid::spheroid;
 use stokes_body::dirichlet::{DirichletSolver, Formulation};
 use stokes_body::progress::{Progress, Silent};
 use stokes_body::surface::SurfaceModes;

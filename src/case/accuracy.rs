@@ -12,7 +12,8 @@ pub const SMALLEST_TOLERANCE: f64 = 1e-14;
 pub const MOST_PANELS: usize = 1000;
 /// Most azimuthal modes.
 pub const MOST_MODES: usize = 1000;
-/// Most memory, in GiB, that panels, order and modes by hand may ask for, the solution that checks them included.
+/// Most memory, in GiB, that panels, order and modes by hand may ask for, the solution that checks
+/// them included.
 const MOST_MEMORY: f64 = 16.0;
 
 /// What `[accuracy]` asks for.

@@ -5,10 +5,12 @@ use std::fs::{File, metadata};
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-/// The largest file that is read, in bytes (4 MiB): whatever it holds, it is judged within a second or so.
+/// The largest file that is read, in bytes (4 MiB): whatever it holds, it is judged within a second
+/// or so.
 pub const LARGEST_FILE: u64 = 4 << 20;
 
-/// The text of a regular file of at most [`LARGEST_FILE`] bytes; everything else is refused before it is read.
+/// The text of a regular file of at most [`LARGEST_FILE`] bytes; everything else is refused before
+/// it is read.
 pub fn read_text(path: &Path) -> Result<String, CaseError> {
     check_regular(path).map_err(|message| CaseError::new(path.display(), None, message))?;
     let fail = |message: String| CaseError::new(path.display(), None, message);
@@ -35,7 +37,8 @@ pub(super) fn text_of(reader: impl Read, path: &Path) -> Result<String, CaseErro
     })
 }
 
-/// Whether `path` is a regular file of acceptable size; otherwise what it is. Does not open the file.
+/// Whether `path` is a regular file of acceptable size; otherwise what it is. Does not open the
+/// file.
 pub fn check_regular(path: &Path) -> Result<(), String> {
     let about = metadata(path).map_err(|e| describe(&e))?;
     if about.is_dir() {

@@ -1,9 +1,10 @@
 //! Case files: what is asked, as validated values.
 //!
-//! [`Case::read`] turns a TOML file into a [`Case`] or into one [`CaseError`] that names the key, its line, the
-//! offending value and what was expected. The whole format is read; what cannot be solved yet is refused
-//! afterwards, by name, in [`Case::check_supported`]. Geometry (a curve that meets itself, a probe inside a body)
-//! is checked where curves are known; [`Case::error`] points such an error at the line of its cause.
+//! [`Case::read`] turns a TOML file into a [`Case`] or into one [`CaseError`] that names the key,
+//! its line, the offending value and what was expected. The whole format is read; what cannot be
+//! solved yet is refused afterwards, by name, in [`Case::check_supported`]. Geometry (a curve that
+//! meets itself, a probe inside a body) is checked where curves are known; [`Case::error`] points
+//! such an error at the line of its cause.
 //!
 //! ```
 //! # use axistokes::case::{Case, ShapeSpec};
@@ -19,10 +20,8 @@
 //! assert_eq!(case.shapes["ball"].value, ShapeSpec::Sphere { radius: 1.0 });
 //!
 //! let error = Case::parse("viscosity = -1", "bad.toml").unwrap_err();
-//! assert_eq!(
-//!     error.to_string(),
-//!     "bad.toml:1: viscosity = -1: expected a viscosity, a finite number greater than zero (1e-30 to 1e30)"
-//! );
+//! assert_eq!(error.line(), Some(1));
+//! assert!(error.to_string().starts_with("bad.toml:1: viscosity = -1: expected a viscosity"));
 //! ```
 
 mod accuracy;

@@ -44,7 +44,8 @@ impl Case {
         Self::parse(&read_text(path)?, path)
     }
 
-    /// Parses the text of a case; `path` names it in errors, and its folder is where profiles are looked for.
+    /// Parses the text of a case; `path` names it in errors, and its folder is where profiles are
+    /// looked for.
     pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self, CaseError> {
         let path = path.as_ref();
         let source = Source::new(path.display().to_string(), text);

@@ -56,8 +56,8 @@ impl<'a> Section<'a> {
         })
     }
 
-    /// The value of `kind`, which decides what other keys are known. If it is missing and a key that
-    /// looks like it is given, the error says so.
+    /// The value of `kind`, which decides what other keys are known. If it is missing and a key
+    /// that looks like it is given, the error says so.
     pub(super) fn kind(&self, what: &str) -> Result<Node<'a>, CaseError> {
         let meant = |(name, _): &(&str, Node<'a>)| nearest(name, &["kind"]).is_some();
         match self.entries().into_iter().find(meant) {

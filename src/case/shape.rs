@@ -20,7 +20,8 @@ const KINDS: &[(&str, &[&str])] = &[
     ("profile", &["kind", "file"]),
 ];
 
-/// A generating curve with validated numbers: symmetry axis z, centred at the origin, lengths in units of the case.
+/// A generating curve with validated numbers: symmetry axis z, centred at the origin, lengths in
+/// units of the case.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ShapeSpec {
@@ -63,7 +64,8 @@ pub enum ShapeSpec {
     },
     /// A curve through the points of a file.
     Profile {
-        /// Path of an existing regular file with columns `r,z`; already resolved against the folder of the case.
+        /// Path of an existing regular file with columns `r,z`; already resolved against the folder
+        /// of the case.
         file: PathBuf,
     },
 }

@@ -3,7 +3,8 @@
 /// The longest name that is compared or shown, in characters.
 const LONGEST: usize = 40;
 
-/// The known name nearest to `given`, if it is near enough to be a typing error or the plural of it.
+/// The known name nearest to `given`, if it is near enough to be a typing error or the plural of
+/// it.
 pub(super) fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
     if given.len() > LONGEST {
         return None;

@@ -95,7 +95,8 @@ pub struct Solve {
     /// Show every body in the table, also if there are more than twenty.
     #[arg(long, conflicts_with = "json")]
     pub all: bool,
-    /// Draw the flow in a plane: colours, streamlines, bodies. The plane is [plane] of the case, or one in which much is to be seen.
+    /// Draw the flow in a plane: colours, streamlines, bodies. The plane is [plane] of the case, or
+    /// one in which much is to be seen.
     #[arg(long, value_name = "FILE.svg")]
     pub picture: Option<PathBuf>,
     /// What the colours of the picture show.
@@ -142,7 +143,8 @@ pub struct Resistance {
 /// Arguments of `converge`.
 #[derive(Args, Debug)]
 pub struct Converge {
-    /// Folder for convergence.svg, timing.svg and the same numbers as CSV; made if it does not exist.
+    /// Folder for convergence.svg, timing.svg and the same numbers as CSV; made if it does not
+    /// exist.
     #[arg(long, value_name = "DIR", default_value = "convergence")]
     pub output: PathBuf,
     /// Few resolutions only: seconds instead of minutes.

@@ -1,7 +1,8 @@
 //! The thesis's numerical study of one body (section 3.6.1), repeated.
 //!
-//! The flow of random Stokeslets inside a prolate spheroid is found again from its values on the surface, under a random
-//! rotation, and compared with the exact flow on a grid around the body. Nothing here reads or writes files.
+//! The flow of random Stokeslets inside a prolate spheroid is found again from its values on the
+//! surface, under a random rotation, and compared with the exact flow on a grid around the body.
+//! Nothing here reads or writes files.
 //!
 //! | module | what |
 //! |---|---|

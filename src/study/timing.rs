@@ -17,8 +17,8 @@ use stokes_body::surface::SurfaceModes;
 /// The stages: names in the order of [`Timing::seconds`].
 pub const STAGES: [&str; 4] = ["assemble", "factor", "solve", "evaluate"];
 
-/// The targets' spheroid is this much larger than in the error study, so that no resolution refines its density for the
-/// evaluation: the time is then that of the sum alone.
+/// The targets' spheroid is this much larger than in the error study, so that no resolution refines
+/// its density for the evaluation: the time is then that of the sum alone.
 const TARGETS_SCALED: f64 = 4.0;
 
 /// Short stages are repeated so long, in seconds, at most [`RUNS`] times.
@@ -81,7 +81,8 @@ impl TimingTable {
         })
     }
 
-    /// The rows that exponents are fitted to: the larger half, where overheads count least, and at least four.
+    /// The rows that exponents are fitted to: the larger half, where overheads count least, and at
+    /// least four.
     pub fn fitted(&self) -> &[Timing] {
         let from = self
             .rows

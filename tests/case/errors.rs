@@ -1,4 +1,5 @@
-//! Bad input of every kind: exit status 2 within a second, one clear line on stderr, nothing written.
+//! Bad input of every kind: exit status 2 within a second, one clear line on stderr, nothing
+//! written.
 
 use std::fs::{self, File};
 use std::io::Write;
@@ -60,7 +61,8 @@ fn solve(folders: &Folders, path: &Path) -> Output {
         .unwrap()
 }
 
-/// Runs the program on `path` and checks everything a refusal must be; `words` must occur in its one line.
+/// Runs the program on `path` and checks everything a refusal must be; `words` must occur in its
+/// one line.
 #[track_caller]
 fn assert_refused_file(folders: &Folders, path: &Path, words: &[&str]) {
     let before = fs::read_dir(&folders.case).unwrap().count();

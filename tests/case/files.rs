@@ -1,4 +1,5 @@
-//! The project's cases are read whole, and those of later issues refused by name; mutations never panic.
+//! The project's cases are read whole, and those of later issues refused by name; mutations never
+//! panic.
 
 use axistokes::case::{
     Accuracy, Background, Body, BodyOrientation, Case, Component, Motion, ShapeSpec, Slip, Steps,

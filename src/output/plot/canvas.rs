@@ -15,7 +15,8 @@ pub(super) type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// Width and height of one diagram with its labels, in pixels.
 pub(super) const DIAGRAM: (i32, i32) = (640, 440);
 
-/// Draws diagrams in rows and columns on a white ground; `draw` gets the canvas and the corner of each.
+/// Draws diagrams in rows and columns on a white ground; `draw` gets the canvas and the corner of
+/// each.
 pub(super) fn diagrams(
     columns: usize,
     rows: usize,

@@ -1,4 +1,5 @@
-//! Figure 3.2: a heat map of the relative error over panels and modes, and curves of the absolute error.
+//! Figure 3.2: a heat map of the relative error over panels and modes, and curves of the absolute
+//! error.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};

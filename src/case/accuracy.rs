@@ -12,7 +12,8 @@ pub const SMALLEST_TOLERANCE: f64 = 1e-14;
 pub const MOST_PANELS: usize = 1000;
 /// Most azimuthal modes.
 pub const MOST_MODES: usize = 1000;
-/// Most memory, in GiB, that panels, order and modes by hand may ask for, the solution that checks them included.
+/// Most memory, in GiB, that panels, order and modes by hand may ask for, the solution that checks
+/// them included.
 const MOST_MEMORY: f64 = 16.0;
 
 /// What `[accuracy]` asks for.
@@ -37,29 +38,40 @@ impl Default for Accuracy {
     }
 }
 
+/// What `[accuracy]` says.
+#[derive(Default)]
+pub(super) struct AccuracyOptions {
+    /// See [`super::Case::accuracy`].
+    pub(super) accuracy: Accuracy,
+    /// See [`super::Case::tolerance_by_hand`].
+    pub(super) tolerance_by_hand: Option<f64>,
+    /// See [`super::Case::estimate`].
+    pub(super) estimate: Option<bool>,
+}
+
 /// Reads `[accuracy]`.
-pub(super) fn read_accuracy(node: Node<'_>) -> Result<Accuracy, CaseError> {
-    const BY_HAND: [&str; 3] = ["panels", "order", "modes"];
-    let section = Section::new(node, &["tolerance", "panels", "order", "modes"])?;
-    let by_hand = BY_HAND.iter().find_map(|key| section.optional(key));
-    match (section.optional("tolerance"), by_hand) {
-        (None, None) => Err(section
+pub(super) fn read_accuracy(node: Node<'_>) -> Result<AccuracyOptions, CaseError> {
+    let section = Section::new(node, &["tolerance", "panels", "order", "modes", "estimate"])?;
+    if section.is_empty() {
+        return Err(section
             .node
-            .error("[accuracy] is empty: expected tolerance, or panels, order and modes")),
-        (Some(node), None) => read_tolerance(&node).map(Accuracy::Tolerance),
-        (None, Some(_)) => read_by_hand(&section),
-        (Some(tolerance), Some(other)) => {
-            let later = if tolerance.line > other.line {
-                &tolerance
-            } else {
-                &other
-            };
-            Err(later.error(format!(
-                "both {} and {} are given: expected tolerance alone, or panels, order and modes",
-                tolerance.key, other.key
-            )))
-        }
+            .error("[accuracy] is empty: expected tolerance, or panels, order and modes"));
     }
+    let estimate = section.read("estimate", Node::boolean)?;
+    let tolerance = section.read("tolerance", read_tolerance)?;
+    let by_hand = ["panels", "order", "modes"].iter();
+    if by_hand.filter_map(|key| section.optional(key)).count() == 0 {
+        return Ok(AccuracyOptions {
+            accuracy: tolerance.map(Accuracy::Tolerance).unwrap_or_default(),
+            tolerance_by_hand: None,
+            estimate,
+        });
+    }
+    Ok(AccuracyOptions {
+        accuracy: read_by_hand(&section)?,
+        tolerance_by_hand: tolerance,
+        estimate,
+    })
 }
 
 /// A relative tolerance that doubles can serve.

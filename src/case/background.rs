@@ -4,7 +4,8 @@ use super::CaseError;
 use super::node::Node;
 use super::section::Section;
 
-/// How far from orthogonal, or from free of divergence, a flow may be: relative rounding of its given digits.
+/// How far from orthogonal, or from free of divergence, a flow may be: relative rounding of its
+/// given digits.
 const SLACK: f64 = 1e-12;
 
 /// A flow `U + G x` that the bodies disturb.
@@ -42,7 +43,7 @@ enum Kind {
 /// Reads `[background]`.
 pub(super) fn read_background(node: Node<'_>) -> Result<Background, CaseError> {
     let section = Section::open(node)?;
-    let kind = section.required("kind", "one of uniform, shear, linear")?;
+    let kind = section.kind("one of uniform, shear, linear")?;
     let kinds = [
         ("uniform", Kind::Uniform),
         ("shear", Kind::Shear),

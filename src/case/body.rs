@@ -1,6 +1,8 @@
 //! Bodies: a shape, where it is, and what is imposed on it.
 
+use super::motion::{Component, Motion, read_motion};
 use super::node::Node;
+use super::orientation::{BodyOrientation, read_orientation};
 use super::section::Section;
 use super::shape::ShapeSpec;
 use super::slip::{Slip, read_slip};
@@ -12,6 +14,7 @@ const KEYS: &[&str] = &[
     "shape",
     "center",
     "axis",
+    "orientation",
     "scale",
     "velocity",
     "angular_velocity",
@@ -30,33 +33,31 @@ pub struct Body {
     pub shape: String,
     /// Where the origin of the shape lies; the origin if not given.
     pub center: [f64; 3],
-    /// Direction of the symmetry axis, of length one; z if not given.
+    /// How it lies in space; its axis is z if not given.
+    pub orientation: BodyOrientation,
+    /// Direction of the symmetry axis, of length one. It is always that of `orientation`: for
+    /// whoever needs no rotation about the axis.
     pub axis: [f64; 3],
     /// How many times larger the body is than its shape, positive; 1 if not given.
     pub scale: f64,
-    /// What is imposed on it.
+    /// What is imposed on it, component by component: velocity x, y, z, then angular velocity x,
+    /// y, z. This is the one thing that holds for every body.
+    pub components: [Component; 6],
+    /// The same for bodies that are moved in all components or free in all. Of a mixed body it
+    /// says only what is imposed, with zeros where it is free: see [`Self::is_mixed`].
     pub motion: Located<Motion>,
+    /// Whether the case says anything of velocity, force, angular velocity or torque.
+    pub(super) motion_given: bool,
     /// Tangential velocity of its surface relative to the body.
     pub slip: Option<Located<Slip>>,
 }
 
-/// What is imposed on a body; vectors in the laboratory frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Motion {
-    /// The rigid motion is given (zero where the case gives nothing: the body is held).
-    Rigid {
-        /// Velocity of the centre.
-        velocity: [f64; 3],
-        /// Angular velocity.
-        angular_velocity: [f64; 3],
-    },
-    /// Force and torque are given, the motion is wanted.
-    Free {
-        /// Force exerted on the body from outside.
-        force: [f64; 3],
-        /// Torque about the centre, exerted on the body from outside.
-        torque: [f64; 3],
-    },
+impl Body {
+    /// Whether some of its six components are imposed and some are free.
+    pub fn is_mixed(&self) -> bool {
+        let free = |component: &&Component| matches!(component, Component::Free(_));
+        (1..6).contains(&self.components.iter().filter(free).count())
+    }
 }
 
 /// Reads `[[bodies]]`.
@@ -87,51 +88,22 @@ fn read_body(
         let hint = hint(&shape, &names);
         return Err(shape_node.expected(format_args!("the name of a shape of this case{hint}")));
     };
+    let orientation = read_orientation(&section)?;
+    let given = read_motion(&section)?;
     Ok(Body {
         line,
         center: section.read("center", Node::vector)?.unwrap_or_default(),
-        axis: section
-            .read("axis", Node::direction)?
-            .unwrap_or([0.0, 0.0, 1.0]),
+        orientation,
+        axis: orientation.axis(),
         scale: section
             .read("scale", |node| node.positive("a scale"))?
             .unwrap_or(1.0),
-        motion: read_motion(&section)?,
+        components: given.components,
+        motion: given.motion,
+        motion_given: given.by_case,
         slip: section.read("slip", |node| {
             Ok(node.located(read_slip(node.clone(), spec)?))
         })?,
         shape,
     })
-}
-
-fn read_motion(section: &Section<'_>) -> Result<Located<Motion>, CaseError> {
-    let [velocity, angular_velocity, force, torque] =
-        ["velocity", "angular_velocity", "force", "torque"].map(|key| section.optional(key));
-    let rigid = velocity.as_ref().or(angular_velocity.as_ref());
-    let free = force.as_ref().or(torque.as_ref());
-    if let (Some(rigid), Some(free)) = (rigid, free) {
-        let later = if rigid.line > free.line { rigid } else { free };
-        return Err(later.error(format!(
-            "both {} and {} are given: expected either velocity and angular_velocity, or force and torque",
-            rigid.key, free.key
-        )));
-    }
-    let line = rigid.or(free).map_or(section.node.line, |node| node.line);
-    let is_free = free.is_some();
-    let vector = |node: Option<Node<'_>>| match node {
-        Some(node) => node.vector(),
-        None => Ok([0.0; 3]),
-    };
-    let value = if is_free {
-        Motion::Free {
-            force: vector(force)?,
-            torque: vector(torque)?,
-        }
-    } else {
-        Motion::Rigid {
-            velocity: vector(velocity)?,
-            angular_velocity: vector(angular_velocity)?,
-        }
-    };
-    Ok(Located { line, value })
 }

@@ -4,8 +4,8 @@ use std::fmt::{self, Display, Formatter};
 
 /// What is wrong with a case: one line, `FILE:LINE: message`.
 ///
-/// Control characters of the input are escaped and long names cut, so that the message stays on one line
-/// whatever the file held.
+/// Control characters of the input are escaped and long names cut, so that the message stays on one
+/// line whatever the file held.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub struct CaseError {
     file: String,

@@ -13,7 +13,8 @@ pub struct Stokeslet {
     pub force: [f64; 3],
 }
 
-/// The flow of Stokeslets inside the bodies; its values on the surfaces replace whatever the bodies impose.
+/// The flow of Stokeslets inside the bodies; its values on the surfaces replace whatever the bodies
+/// impose.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct KnownFlow {

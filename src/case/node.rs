@@ -61,6 +61,15 @@ impl<'a> Node<'a> {
         Located { line, value }
     }
 
+    /// The one of two nodes that comes later in the file; the second if they share a line.
+    pub(super) fn later<'n>(first: &'n Self, second: &'n Self) -> &'n Self {
+        if first.line > second.line {
+            first
+        } else {
+            second
+        }
+    }
+
     /// An error at this node: `key = value: expected ...`.
     pub(super) fn expected(&self, what: impl Display) -> CaseError {
         let message = match &self.content {
@@ -153,28 +162,49 @@ impl<'a> Node<'a> {
 
     /// Three finite numbers.
     pub(super) fn vector(&self) -> Result<[f64; 3], CaseError> {
-        let fail = || self.expected("three finite numbers (at most 1e30 in magnitude), [x, y, z]");
-        let items = self.items("three finite numbers (at most 1e30 in magnitude), [x, y, z]")?;
-        let items: &[_; 3] = items.try_into().map_err(|_| fail())?;
-        let mut vector = [0.0; 3];
-        for (component, item) in vector.iter_mut().zip(items) {
-            *component = as_number(item.get_ref())
-                .filter(|x| x.abs() <= LARGEST)
-                .ok_or_else(fail)?;
+        self.components("three finite numbers (at most 1e30 in magnitude), [x, y, z]")
+    }
+
+    /// Three components, each a finite number or, as `None`, the word "free".
+    pub(super) fn vector_or_free(&self) -> Result<[Option<f64>; 3], CaseError> {
+        let what = "three components [x, y, z], each a finite number (at most 1e30 in magnitude) \
+                    or \"free\"";
+        let items: &[_; 3] = (self.items(what)?.try_into()).map_err(|_| self.expected(what))?;
+        let mut components = [None; 3];
+        for (component, item) in components.iter_mut().zip(items) {
+            *component = match item.get_ref() {
+                DeValue::String(word) if word == "free" => None,
+                value => {
+                    let number = as_number(value).filter(|x| x.abs() <= LARGEST);
+                    Some(number.ok_or_else(|| self.expected(what))?)
+                }
+            };
         }
-        Ok(vector)
+        Ok(components)
     }
 
     /// Three finite numbers, not all zero, scaled to length one.
     pub(super) fn direction(&self) -> Result<[f64; 3], CaseError> {
-        let vector = self.vector()?;
-        let largest = vector.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        if largest < SMALLEST {
-            return Err(self.expected("a vector of any length but zero"));
+        normalized(self.vector()?).ok_or_else(|| self.expected("a vector of any length but zero"))
+    }
+
+    /// A quaternion, scalar first: four finite numbers, not all zero, scaled to length one.
+    pub(super) fn quaternion(&self) -> Result<[f64; 4], CaseError> {
+        let what = "a quaternion: four finite numbers (at most 1e30 in magnitude), [w, x, y, z]";
+        normalized(self.components(what)?)
+            .ok_or_else(|| self.expected("a quaternion of any length but zero"))
+    }
+
+    /// As many finite numbers as the result has, described by `what`.
+    fn components<const N: usize>(&self, what: &str) -> Result<[f64; N], CaseError> {
+        let items: &[_; N] = (self.items(what)?.try_into()).map_err(|_| self.expected(what))?;
+        let mut components = [0.0; N];
+        for (component, item) in components.iter_mut().zip(items) {
+            *component = as_number(item.get_ref())
+                .filter(|x| x.abs() <= LARGEST)
+                .ok_or_else(|| self.expected(what))?;
         }
-        let scaled = vector.map(|x| x / largest);
-        let length = scaled.iter().map(|x| x * x).sum::<f64>().sqrt();
-        Ok(scaled.map(|x| x / length))
+        Ok(components)
     }
 
     /// A list of finite numbers, at least one.
@@ -221,6 +251,18 @@ impl<'a> Node<'a> {
             Content::Value(value) => Some(value.get_ref()),
         }
     }
+}
+
+/// The same direction with length one; none for the zero vector.
+fn normalized<const N: usize>(vector: [f64; N]) -> Option<[f64; N]> {
+    let largest = vector.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    if largest < SMALLEST {
+        return None;
+    }
+    // divided first by the largest, so that no square over- or underflows
+    let scaled = vector.map(|x| x / largest);
+    let length = scaled.iter().map(|x| x * x).sum::<f64>().sqrt();
+    Some(scaled.map(|x| x / length))
 }
 
 /// The number a TOML integer or float stands for; infinities and NaN pass.

@@ -2,7 +2,7 @@
 
 use super::CaseError;
 use super::node::Node;
-use super::suggest::hint;
+use super::suggest::{hint, nearest};
 use toml::de::DeTable;
 
 /// A table in which only known keys occur.
@@ -54,6 +54,19 @@ impl<'a> Section<'a> {
             self.node
                 .error(format!("{} is missing: expected {what}", self.path(key)))
         })
+    }
+
+    /// The value of `kind`, which decides what other keys are known. If it is missing and a key
+    /// that looks like it is given, the error says so.
+    pub(super) fn kind(&self, what: &str) -> Result<Node<'a>, CaseError> {
+        let meant = |(name, _): &(&str, Node<'a>)| nearest(name, &["kind"]).is_some();
+        match self.entries().into_iter().find(meant) {
+            Some((name, node)) if self.optional("kind").is_none() => Err(node.error(format!(
+                "unknown key {}, did you mean `kind`? (expected {what})",
+                self.path(name)
+            ))),
+            _ => self.required("kind", what),
+        }
     }
 
     /// Reads the value of `key` if it is given.

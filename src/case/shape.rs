@@ -20,7 +20,8 @@ const KINDS: &[(&str, &[&str])] = &[
     ("profile", &["kind", "file"]),
 ];
 
-/// A generating curve with validated numbers: symmetry axis z, centred at the origin, lengths in units of the case.
+/// A generating curve with validated numbers: symmetry axis z, centred at the origin, lengths in
+/// units of the case.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ShapeSpec {
@@ -63,7 +64,8 @@ pub enum ShapeSpec {
     },
     /// A curve through the points of a file.
     Profile {
-        /// Path of an existing regular file with columns `r,z`; already resolved against the folder of the case.
+        /// Path of an existing regular file with columns `r,z`; already resolved against the folder
+        /// of the case.
         file: PathBuf,
     },
 }
@@ -84,7 +86,7 @@ pub(super) fn read_shapes(
 fn read_shape(node: &Node<'_>, folder: &Path) -> Result<ShapeSpec, CaseError> {
     let section = Section::open(node.clone())?;
     let kinds: Vec<&str> = KINDS.iter().map(|(kind, _)| *kind).collect();
-    let kind = section.required("kind", &format!("one of {}", kinds.join(", ")))?;
+    let kind = section.kind(&format!("one of {}", kinds.join(", ")))?;
     let choices: Vec<_> = KINDS.iter().map(|pair| (pair.0, *pair)).collect();
     let (kind, known) = kind.choice(&choices)?;
     section.check(known)?;

@@ -34,7 +34,7 @@ enum Kind {
 /// Reads `slip = { kind = ... }` of a body of the given shape.
 pub(super) fn read_slip(node: Node<'_>, shape: &ShapeSpec) -> Result<Slip, CaseError> {
     let section = Section::open(node)?;
-    let kind_node = section.required("kind", "one of squirmer, pole-to-pole")?;
+    let kind_node = section.kind("one of squirmer, pole-to-pole")?;
     let kind = kind_node.choice(&[
         ("squirmer", Kind::Squirmer),
         ("pole-to-pole", Kind::PoleToPole),

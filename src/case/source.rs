@@ -1,7 +1,6 @@
 //! The text of a case file, and the line of a place in it.
 
 use super::CaseError;
-use super::node::Node;
 use std::ops::Range;
 use toml::de::DeTable;
 
@@ -30,11 +29,6 @@ impl<'t> Source<'t> {
             Ok(document) => Ok(document.into_inner()),
             Err(error) => Err(self.syntax_error(&error)),
         }
-    }
-
-    /// The whole document as a node of the tree.
-    pub(super) fn root<'a>(&'a self, document: &'a DeTable<'t>) -> Node<'a> {
-        Node::root(self, document)
     }
 
     /// Line, counted from 1, of a byte offset.

@@ -3,7 +3,8 @@
 /// The longest name that is compared or shown, in characters.
 const LONGEST: usize = 40;
 
-/// The known name nearest to `given`, if it is near enough to be a slip of the keyboard.
+/// The known name nearest to `given`, if it is near enough to be a typing error or the plural of
+/// it.
 pub(super) fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
     if given.len() > LONGEST {
         return None;
@@ -12,7 +13,7 @@ pub(super) fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
     known
         .iter()
         .filter(|name| name.len() <= LONGEST)
-        .map(|&name| (distance(&given, &name.to_lowercase()), name))
+        .map(|&name| (difference(&given, &name.to_lowercase()), name))
         .filter(|&(d, name)| d <= 1 + name.len().min(given.len()) / 3)
         .min()
         .map(|(_, name)| name)
@@ -36,6 +37,21 @@ pub(super) fn hint(given: &str, known: &[&str]) -> String {
     let list = names.join(", ");
     text.push_str(&format!(" (known: {list}{more})"));
     text
+}
+
+/// How different two names are; singular and plural differ by one.
+fn difference(a: &str, b: &str) -> usize {
+    let as_typed = distance(a, b);
+    let in_singular = distance(&singular(a), &singular(b)) + usize::from(a != b);
+    as_typed.min(in_singular)
+}
+
+/// The name without the ending of a plural.
+fn singular(name: &str) -> String {
+    match name.strip_suffix("ies") {
+        Some(stem) => format!("{stem}y"),
+        None => name.strip_suffix('s').unwrap_or(name).to_owned(),
+    }
 }
 
 /// Levenshtein's distance: insertions, deletions and substitutions that turn `a` into `b`.
@@ -64,6 +80,16 @@ mod tests {
         assert_eq!(nearest("polr", &known), Some("polar"));
         assert_eq!(nearest("equitorial", &known), Some("equatorial"));
         assert_eq!(nearest("temperature", &known), None);
+    }
+
+    #[test]
+    fn singular_and_plural_are_near() {
+        let known = ["bodies", "probes", "axis", "velocity", "shapes"];
+        assert_eq!(nearest("body", &known), Some("bodies"));
+        assert_eq!(nearest("Bodys", &known), Some("bodies"));
+        assert_eq!(nearest("probe", &known), Some("probes"));
+        assert_eq!(nearest("velocities", &known), Some("velocity"));
+        assert_eq!(nearest("axes", &known), Some("axis"));
     }
 
     #[test]

@@ -86,7 +86,7 @@ pub enum Command {
 /// Arguments of `solve`.
 #[derive(Args, Debug)]
 pub struct Solve {
-    /// The case file.
+    /// The case file; - reads the case from standard input.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
     /// Print one JSON object and nothing else on stdout.
@@ -95,7 +95,8 @@ pub struct Solve {
     /// Show every body in the table, also if there are more than twenty.
     #[arg(long, conflicts_with = "json")]
     pub all: bool,
-    /// Draw the flow in a plane: colours, streamlines, bodies. The plane is [plane] of the case, or one in which much is to be seen.
+    /// Draw the flow in a plane: colours, streamlines, bodies. The plane is [plane] of the case, or
+    /// one in which much is to be seen.
     #[arg(long, value_name = "FILE.svg")]
     pub picture: Option<PathBuf>,
     /// What the colours of the picture show.
@@ -131,7 +132,7 @@ impl From<PictureOf> for Quantity {
 /// Arguments of `resistance`.
 #[derive(Args, Debug)]
 pub struct Resistance {
-    /// The case file; only its shapes, accuracy and viscosity matter.
+    /// The case file, or - for standard input; only its shapes, accuracy and viscosity matter.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
     /// Print one JSON object and nothing else on stdout.
@@ -142,7 +143,8 @@ pub struct Resistance {
 /// Arguments of `converge`.
 #[derive(Args, Debug)]
 pub struct Converge {
-    /// Folder for convergence.svg, timing.svg and the same numbers as CSV; made if it does not exist.
+    /// Folder for convergence.svg, timing.svg and the same numbers as CSV; made if it does not
+    /// exist.
     #[arg(long, value_name = "DIR", default_value = "convergence")]
     pub output: PathBuf,
     /// Few resolutions only: seconds instead of minutes.

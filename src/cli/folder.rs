@@ -17,7 +17,8 @@ impl Folder {
         if path.exists() && !path.is_dir() {
             return Err("this is not a folder".into());
         }
-        // The deepest part of the path that exists: made is the rest only when there is something to write.
+        // The deepest part of the path that exists: the rest is made only when there is something
+        // to write.
         let absolute = std::path::absolute(path).map_err(|error| error.to_string())?;
         let existing = absolute.ancestors().find(|part| part.exists());
         let existing = existing.ok_or("cannot make the folder")?;

@@ -1,16 +1,20 @@
 //! Errors over panels and modes.
 
+use super::error::StudyError;
 use super::plan::MEMORY;
 use super::setup::{Errors, Setup};
-use super::{StudyError, bytes, spheroid};
+use super::size::bytes;
+use super::spheroid::spheroid;
 use stokes_body::dirichlet::{DirichletSolver, Formulation};
 use stokes_body::progress::{Progress, Silent};
 use stokes_body::surface::SurfaceModes;
 
-/// Errors at or below this are rounding as much as discretisation, and say nothing about the order of convergence.
+/// Errors at or below this are rounding as much as discretisation, and say nothing about the order
+/// of convergence.
 pub const ROUNDING: f64 = 1e-12;
 
-/// The finest tolerance of the evaluation: far below rounding, so that what is measured is the density's error.
+/// The finest tolerance of the evaluation: far below rounding, so that what is measured is the
+/// density's error.
 const EVALUATION: f64 = 1e-16;
 
 /// Errors for every pair of panels and modes.
@@ -22,12 +26,14 @@ pub struct ErrorTable {
     pub panels: Vec<usize>,
     /// Highest modes.
     pub modes: Vec<usize>,
-    /// A row for each number of panels, an entry for each highest mode; none where memory would not do.
+    /// A row for each number of panels, an entry for each highest mode; none where it would need
+    /// too much memory.
     pub rows: Vec<Vec<Option<Errors>>>,
 }
 
 impl ErrorTable {
-    /// Measures all errors of one order. One factorisation serves every number of modes: each mode is an equation by itself.
+    /// Measures all errors of one order. One factorisation serves every number of modes: each mode
+    /// is an equation by itself.
     ///
     /// # Errors
     /// If the order has no quadrature.
@@ -73,7 +79,8 @@ impl ErrorTable {
         .collect()
     }
 
-    /// The order in panels that each row shows against the one before, with the most modes; none at rounding.
+    /// The order in panels that each row shows against the one before, with the most modes; none
+    /// where the error is rounding.
     pub fn observed_orders(&self) -> Vec<Option<f64>> {
         let last = |k: usize| self.rows[k].last().copied().flatten();
         let order = |k: usize| {

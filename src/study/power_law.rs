@@ -10,7 +10,8 @@ pub struct PowerLaw {
 }
 
 impl PowerLaw {
-    /// The least-squares line through the logarithms of positive points; none through fewer than two places.
+    /// The least-squares line through the logarithms of positive points; none through fewer than
+    /// two places.
     pub fn fit(points: &[(f64, f64)]) -> Option<Self> {
         let count = points.len() as f64;
         let logs: Vec<_> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();

@@ -36,8 +36,8 @@ pub struct Errors {
 }
 
 impl Setup {
-    /// The flow that belongs to `seed`: places uniform in the parameters of the spheroid, forces normal with unit deviation,
-    /// rotation uniform.
+    /// The flow that belongs to `seed`: places uniform in the parameters of the spheroid, forces
+    /// normal with unit deviation, rotation uniform.
     pub fn random(seed: u64) -> Self {
         let mut random = Rng::with_seed(seed);
         let attitude = Quaternion::from_vector(std::array::from_fn(|_| normal(&mut random)).into());

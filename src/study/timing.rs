@@ -4,10 +4,12 @@ use std::time::Instant;
 
 use nalgebra::Point3;
 
+use super::error::StudyError;
 use super::plan::{MEMORY, MODES_PER_PANEL};
 use super::power_law::PowerLaw;
 use super::setup::Setup;
-use super::{StudyError, bytes, points, spheroid};
+use super::size::{bytes, points};
+use super::spheroid::spheroid;
 use stokes_body::dirichlet::{DirichletSolver, Formulation};
 use stokes_body::progress::{Progress, Silent};
 use stokes_body::surface::SurfaceModes;
@@ -15,8 +17,8 @@ use stokes_body::surface::SurfaceModes;
 /// The stages: names in the order of [`Timing::seconds`].
 pub const STAGES: [&str; 4] = ["assemble", "factor", "solve", "evaluate"];
 
-/// The targets' spheroid is this much larger than in the error study, so that no resolution refines its density for the
-/// evaluation: the time is then that of the sum alone.
+/// The targets' spheroid is this much larger than in the error study, so that no resolution refines
+/// its density for the evaluation: the time is then that of the sum alone.
 const TARGETS_SCALED: f64 = 4.0;
 
 /// Short stages are repeated so long, in seconds, at most [`RUNS`] times.
@@ -79,7 +81,8 @@ impl TimingTable {
         })
     }
 
-    /// The rows that exponents are fitted to: the larger half, where overheads count least, and at least four.
+    /// The rows that exponents are fitted to: the larger half, where overheads count least, and at
+    /// least four.
     pub fn fitted(&self) -> &[Timing] {
         let from = self
             .rows

@@ -1,6 +1,8 @@
-//! Bad input of every kind: exit status 2 within a second, one clear line on stderr, nothing written.
+//! Bad input of every kind: exit status 2 within a second, one clear line on stderr, nothing
+//! written.
 
 use std::fs::{self, File};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
@@ -59,7 +61,8 @@ fn solve(folders: &Folders, path: &Path) -> Output {
         .unwrap()
 }
 
-/// Runs the program on `path` and checks everything a refusal must be; `words` must occur in its one line.
+/// Runs the program on `path` and checks everything a refusal must be; `words` must occur in its
+/// one line.
 #[track_caller]
 fn assert_refused_file(folders: &Folders, path: &Path, words: &[&str]) {
     let before = fs::read_dir(&folders.case).unwrap().count();
@@ -111,6 +114,26 @@ fn unknown_keys() {
             &["case.toml:7:", "bodies[0].centre", "`center`"],
         ),
         ("[probes]", "[probe]", &["case.toml:14:", "`probes`"]),
+        (
+            "[[bodies]]",
+            "[[body]]",
+            &["case.toml:5:", "unknown key body", "did you mean `bodies`"],
+        ),
+        (
+            "[shapes.ball]",
+            "[shape.ball]",
+            &["case.toml:1:", "did you mean `shapes`"],
+        ),
+        (
+            "kind =",
+            "kinds =",
+            &["case.toml:2:", "unknown key shapes.ball.kinds", "`kind`"],
+        ),
+        (
+            "velocity =",
+            "velocities =",
+            &["case.toml:9:", "bodies[0].velocities", "`velocity`"],
+        ),
         (
             "tolerance = 1e-8",
             "tolerance = 1e-8\ncolour = 3",
@@ -221,6 +244,21 @@ fn numbers_out_of_range() {
             &["case.toml:8:", "axis", "zero"],
         ),
         (
+            "axis = [0.0, 0.0, 1.0]",
+            "orientation = [0, 0, 0, 0.0]",
+            &["case.toml:8:", "orientation", "any length but zero"],
+        ),
+        (
+            "axis = [0.0, 0.0, 1.0]",
+            "orientation = [1, nan, 0, 0]",
+            &["case.toml:8:", "orientation", "nan", "four finite numbers"],
+        ),
+        (
+            "axis = [0.0, 0.0, 1.0]",
+            "orientation = [0, 0, 1]",
+            &["case.toml:8:", "four finite numbers", "[w, x, y, z]"],
+        ),
+        (
             "velocity = [0.0, 0.0, 1.0]",
             "velocity = [0, inf, 0]",
             &["case.toml:9:", "velocity"],
@@ -263,7 +301,17 @@ fn accuracy_that_cannot_be_had() {
         (
             "tolerance = 1e-8",
             "tolerance = 1e-8\npanels = 8",
-            &["case.toml:13:", "both", "panels"],
+            &["case.toml:11:", "accuracy.order", "missing", "all three"],
+        ),
+        (
+            "tolerance = 1e-8",
+            "tolerance = 1e-15\npanels = 8\norder = 16\nmodes = 4",
+            &["case.toml:12:", "tolerance", "1e-14"],
+        ),
+        (
+            "tolerance = 1e-8",
+            "estimate = 0",
+            &["case.toml:12:", "accuracy.estimate", "true or false"],
         ),
         (
             "tolerance = 1e-8",
@@ -329,8 +377,51 @@ fn bodies_and_shapes_that_do_not_fit() {
         ),
         (
             "velocity = [0.0, 0.0, 1.0]",
-            "velocity = [0.0, 0.0, 1.0]\ntorque = [0, 0, 0]",
-            &["case.toml:10:", "both", "velocity", "torque"],
+            "velocity = [0.0, 0.0, 1.0]\nforce = [0, 0, 0]",
+            &["case.toml:10:", "both", "velocity", "force", "\"free\""],
+        ),
+        (
+            "velocity = [0.0, 0.0, 1.0]",
+            "torque = [0, 0, 0]\nangular_velocity = [0, 0, 1]",
+            &["case.toml:10:", "both", "angular_velocity", "torque"],
+        ),
+        (
+            "velocity = [0.0, 0.0, 1.0]",
+            "force = [0, 1, 0]\nvelocity = [0, 0, \"free\"]",
+            &[
+                "case.toml:9:",
+                "bodies[0].force = [0, 1, 0]",
+                "zero as its y component",
+                "bodies[0].velocity imposes",
+            ],
+        ),
+        (
+            "velocity = [0.0, 0.0, 1.0]",
+            "torque = [0, 0, 2]\nangular_velocity = [\"free\", 0, 0]",
+            &["case.toml:9:", "torque", "zero as its z component"],
+        ),
+        (
+            "velocity = [0.0, 0.0, 1.0]",
+            "velocity = [0, 0, \"fre\"]",
+            &["case.toml:9:", "velocity", "or \"free\""],
+        ),
+        (
+            "velocity = [0.0, 0.0, 1.0]",
+            "velocity = \"free\"",
+            &["case.toml:9:", "velocity", "[x, y, z]"],
+        ),
+        (
+            "velocity = [0.0, 0.0, 1.0]",
+            "force = [0, 0, \"free\"]",
+            &["case.toml:9:", "force", "three finite numbers"],
+        ),
+        (
+            "velocity = [0.0, 0.0, 1.0]",
+            "orientation = [1, 0, 0, 0]",
+            &[
+                "case.toml:9:",
+                "both bodies[0].axis and bodies[0].orientation",
+            ],
         ),
         (
             "kind = \"sphere\"\nradius = 1.0",
@@ -444,6 +535,14 @@ fn what_is_not_built_is_refused_by_name() {
                 "not supported yet: the single-layer formulation of a free body",
             ],
         ),
+        (
+            "velocity = [0.0, 0.0, 1.0]",
+            "velocity = [0, 0, \"free\"]",
+            &[
+                "case.toml:9:",
+                "not supported yet: a body that is imposed in some components and free in others",
+            ],
+        ),
         // an error inside a section that is not built comes first
         (
             "[probes]",
@@ -547,6 +646,60 @@ fn devices_and_pipes() {
     let made = Command::new("mkfifo").arg(&pipe).status();
     if made.is_ok_and(|status| status.success()) {
         assert_refused_file(&folders, &pipe, &["not a regular file"]);
+    }
+}
+
+/// What the program says of a case on its standard input, with `folder` as the current one.
+fn solve_stdin(folder: &Path, text: &[u8]) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_axistokes"))
+        .args(["solve", "--json", "-"])
+        .current_dir(folder)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // the program may refuse the text before it has read all of it
+    let _ = child.stdin.take().unwrap().write_all(text);
+    child.wait_with_output().unwrap()
+}
+
+#[test]
+fn a_case_from_standard_input() {
+    let folders = Folders::new("stdin");
+    let output = solve_stdin(&folders.run, SPHERE.as_bytes());
+    assert!(output.status.success(), "{output:?}");
+    assert!(output.stdout.starts_with(b"{"));
+
+    fs::write(
+        folders.run.join("curve.csv"),
+        "0,1\n0.7,0.7\n1,0\n0.7,-0.7\n0,-1\n",
+    )
+    .unwrap();
+    let profile =
+        "kind = \"profile\"\nfile = \"curve.csv\"\n[[bodies]]\nshape = \"ball\"\nsize = 1";
+    let large = vec![b'#'; (4 << 20) + 1];
+    let wrong = [
+        (
+            format!("[shapes.ball]\n{profile}").into_bytes(),
+            "stdin:6: unknown key bodies[0].size",
+        ),
+        (
+            SPHERE.replace("1e-8", "2").into_bytes(),
+            "stdin:12: accuracy.tolerance",
+        ),
+        (b"a\n\xff".to_vec(), "stdin:2: not UTF-8"),
+        (Vec::new(), "stdin: the file is empty"),
+        (large, "stdin: too large, expected at most 4 MiB"),
+    ];
+    for (text, message) in wrong {
+        let output = solve_stdin(&folders.run, &text);
+        let line = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{line}");
+        assert!(
+            line.starts_with(message) && line.lines().count() == 1,
+            "{line}"
+        );
     }
 }
 

@@ -1,6 +1,9 @@
-//! The project's cases are read whole, and those of later issues refused by name; mutations never panic.
+//! The project's cases are read whole, and those of later issues refused by name; mutations never
+//! panic.
 
-use axistokes::case::{Accuracy, Background, Case, Motion, ShapeSpec, Slip, Steps};
+use axistokes::case::{
+    Accuracy, Background, Body, BodyOrientation, Case, Component, Motion, ShapeSpec, Slip, Steps,
+};
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -117,6 +120,147 @@ fn defaults_are_documented_ones() {
     };
     assert_eq!(case.bodies[0].motion.value, held);
     assert_eq!(case.check_supported(), Ok(()));
+}
+
+/// The one body of a case, which has these lines.
+fn body(lines: &str) -> Body {
+    let text =
+        format!("shapes.a = {{ kind = 'sphere', radius = 1 }}\n[[bodies]]\nshape = 'a'\n{lines}");
+    let mut case = Case::parse(&text, "body.toml").unwrap();
+    case.bodies.remove(0)
+}
+
+#[test]
+fn an_orientation_is_a_quaternion_of_any_length() {
+    let turned = body("orientation = [1e3, 0, 1e3, 0]");
+    let half = 0.5_f64.sqrt();
+    let BodyOrientation::Quaternion(quaternion) = turned.orientation else {
+        panic!("{:?}", turned.orientation);
+    };
+    for (found, exact) in quaternion.iter().zip([half, 0.0, half, 0.0]) {
+        assert!((found - exact).abs() < 1e-15);
+    }
+    for (found, exact) in turned.axis.iter().zip([1.0, 0.0, 0.0]) {
+        assert!((found - exact).abs() < 1e-15);
+    }
+    let along = body("axis = [2, 0, 0]");
+    let axis = [1.0, 0.0, 0.0];
+    assert_eq!(
+        (along.orientation, along.axis),
+        (BodyOrientation::Axis(axis), axis)
+    );
+}
+
+#[test]
+fn components_are_imposed_or_free() {
+    use Component::{Free, Imposed};
+    let rest = Imposed(0.0);
+    let unloaded = Free(0.0);
+    let cases = [
+        ("", [rest; 6]),
+        (
+            "velocity = [1, 2, 3]",
+            [Imposed(1.0), Imposed(2.0), Imposed(3.0), rest, rest, rest],
+        ),
+        (
+            "torque = [1, 2, 3]",
+            [
+                unloaded,
+                unloaded,
+                unloaded,
+                Free(1.0),
+                Free(2.0),
+                Free(3.0),
+            ],
+        ),
+        (
+            "velocity = [0, 5, 'free']\nforce = [0, 0, -1]",
+            [rest, Imposed(5.0), Free(-1.0), rest, rest, rest],
+        ),
+        (
+            "velocity = [0, 0, 0]\ntorque = [0, 0, 0]",
+            [rest, rest, rest, unloaded, unloaded, unloaded],
+        ),
+        (
+            "force = [1, 0, 0]\nangular_velocity = [0, 0, 0]",
+            [Free(1.0), unloaded, unloaded, rest, rest, rest],
+        ),
+        (
+            "angular_velocity = ['free', 0, 0]",
+            [rest, rest, rest, unloaded, rest, rest],
+        ),
+    ];
+    for (lines, components) in cases {
+        let body = body(lines);
+        assert_eq!(body.components, components, "{lines}");
+        let free = components.iter().filter(|c| matches!(c, Free(_))).count();
+        assert_eq!(body.is_mixed(), free != 0 && free != 6, "{lines}");
+    }
+    let all_free =
+        body("velocity = ['free', 'free', 'free']\nforce = [1, 0, 0]\ntorque = [0, 2, 0]");
+    let motion = Motion::Free {
+        force: [1.0, 0.0, 0.0],
+        torque: [0.0, 2.0, 0.0],
+    };
+    assert_eq!(all_free.motion.value, motion);
+}
+
+#[test]
+fn a_tolerance_by_hand_is_not_promised() {
+    let case = |accuracy: &str| {
+        let text = format!(
+            "shapes.a = {{ kind = 'sphere', radius = 1 }}\nbodies = [{{ shape = 'a' }}]\n[accuracy]\n{accuracy}"
+        );
+        Case::parse(&text, "accuracy.toml").unwrap()
+    };
+    let tolerances = |case: &Case| (case.tolerance(), case.promised_tolerance());
+    let by_hand = "panels = 8\norder = 16\nmodes = 4\n";
+    assert_eq!(
+        tolerances(&case("tolerance = 1e-6")),
+        (Some(1e-6), Some(1e-6))
+    );
+    assert_eq!(tolerances(&case(by_hand)), (None, None));
+    let both = case(&format!("{by_hand}tolerance = 1e-5\nestimate = false"));
+    assert_eq!(tolerances(&both), (Some(1e-5), None));
+    assert_eq!((both.tolerance_by_hand, both.estimate), (Some(1e-5), false));
+    let alone = case("estimate = false");
+    assert_eq!(
+        (alone.accuracy, alone.estimate),
+        (Accuracy::default(), false)
+    );
+    assert!(case(by_hand).estimate);
+}
+
+#[test]
+fn what_is_seldom_meant_is_warned_of() {
+    let warnings = |lines: &str| {
+        let text = format!(
+            "shapes.a = {{ kind = 'sphere', radius = 1 }}\n[[bodies]]\nshape = 'a'\n{lines}"
+        );
+        Case::parse(&text, "warned.toml").unwrap().warnings()
+    };
+    let none: [&str; 0] = [];
+    let slip = "slip = { kind = 'squirmer', b = [1] }";
+    let held = "body 1 (line 2) has a slip but neither force nor velocity, and is held: \
+                it pumps fluid; give force = [0, 0, 0] to let it swim";
+    assert_eq!(warnings(slip), [held]);
+    assert_eq!(warnings(&format!("{slip}\nforce = [0, 0, 0]")), none);
+    assert_eq!(warnings(&format!("{slip}\nvelocity = [0, 0, 0]")), none);
+    assert_eq!(
+        warnings(&format!(
+            "force = [0, 0, 1]\n[[bodies]]\nshape = 'a'\n{slip}"
+        ))
+        .len(),
+        1
+    );
+
+    let still = ["nothing moves: no velocity, force, slip or background"];
+    assert_eq!(warnings(""), still);
+    assert_eq!(warnings("velocity = [0, 0, 'free']"), still);
+    assert_eq!(warnings("torque = [0, 0, 1]"), none);
+    assert_eq!(warnings("[background]\nkind = 'shear'\nrate = 1"), none);
+    let test = "[test]\nstokeslets = [{ at = [0, 0, 0], force = [0, 0, 1] }]\n[probes]\npoints = [[0, 0, 2]]";
+    assert_eq!(warnings(test), none);
 }
 
 #[test]

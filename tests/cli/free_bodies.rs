@@ -1,4 +1,5 @@
-//! Cases of free bodies, swimmers and background flows, from the file to the report, against closed forms and the matrices.
+//! Cases of free bodies, swimmers and background flows, from the file to the report, against closed
+//! forms and the matrices.
 
 use std::f64::consts::PI;
 
@@ -83,7 +84,8 @@ fn a_squirmer_in_shear_is_carried_along() {
     assert!(report.error_estimate <= 1e-11);
 }
 
-/// On the axis a squirmer's flow is a short sum (Blake 1971), also a thousandth of a radius above its pole.
+/// On the axis a squirmer's flow is a short sum (Blake 1971), also a thousandth of a radius above
+/// its pole.
 #[test]
 fn next_to_a_squirmer_the_flow_is_as_exact_as_elsewhere() {
     let report = report(include_str!("../data/cases/squirmer.toml"));

@@ -1,4 +1,5 @@
-//! Cases of many bodies through the command line and the library: known answers, consistency, messages, files.
+//! Cases of many bodies through the command line and the library: known answers, consistency,
+//! messages, files.
 
 use std::f64::consts::PI;
 use std::fs;
@@ -55,7 +56,8 @@ fn refused(name: &str, text: &str) -> String {
     line
 }
 
-/// The bispherical solution of Stimson and Jeffery (1926) for spheres that approach; the value is that of the case.
+/// The bispherical solution of Stimson and Jeffery (1926) for spheres that approach; the value is
+/// that of the case.
 #[test]
 fn two_spheres_feel_the_known_force() {
     for (viscosity, scale) in [(1.0, 1.0), (3.0, 2.0)] {
@@ -165,8 +167,9 @@ stokeslets = [
 tolerance = 1e-7
 ";
 
-/// Of the flow of Stokeslets inside the bodies each body's layers make those inside it: force, torque and stresslet are known, and so are the
-/// velocities and pressures outside.
+/// The flow of Stokeslets inside the bodies: each body's layers make the flow of the Stokeslets
+/// inside it, so that its force, torque and stresslet are known, and so are the velocities and
+/// pressures outside.
 #[test]
 fn known_stokeslets_come_out_again() {
     for formulation in ["combined", "single-layer"] {

@@ -78,7 +78,8 @@ fn a_probe_next_to_the_surface_is_answered() {
     assert!((velocity.unwrap() - exact).abs() <= 1e-8, "{velocity:?}");
 }
 
-/// The cylinder's first panels were thousands of radii long; refinement then gave up, with an estimate below the error.
+/// The cylinder's first panels were thousands of radii long; refinement then gave up, with an
+/// estimate below the error.
 #[test]
 fn a_capsule_of_length_ten_thousand_meets_its_tolerance() {
     let drag = |tolerance: &str| {

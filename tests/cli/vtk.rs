@@ -103,7 +103,8 @@ impl Mesh {
         vectors
     }
 
-    /// Vertices less edges plus faces, after a check that every edge has two faces, in opposite directions.
+    /// Vertices less edges plus faces, after a check that every edge has two faces, in opposite
+    /// directions.
     fn euler_characteristic(&self) -> i64 {
         let mut edges: HashMap<(usize, usize), i32> = HashMap::new();
         for cell in &self.cells {
@@ -208,7 +209,8 @@ fn surface_data_of_a_sphere_are_exact() {
     }
 }
 
-/// The velocity and pressure at `x` around a unit sphere with velocity `u`, viscosity 1 (Kim and Karrila 1991, section 3.3.1).
+/// The velocity and pressure at `x` around a unit sphere with velocity `u`, viscosity 1 (Kim and
+/// Karrila 1991, section 3.3.1).
 fn stokes(u: Vector3<f64>, x: Vector3<f64>) -> (Vector3<f64>, f64) {
     let r = x.norm();
     let n = x / r;

@@ -212,7 +212,8 @@ fn bounds_the_true_error_tightly_in_fifty_random_cases() {
     ratios.check();
 }
 
-/// A free body whose slip is a known flow in a linear one, less a rigid motion, moves with that rigid motion.
+/// A free body whose slip is a known flow in a linear one, less a rigid motion, moves with that
+/// rigid motion.
 #[test]
 fn bounds_the_true_error_of_free_bodies_too() {
     let mut rng = Rng::with_seed(3);
@@ -245,7 +246,8 @@ fn bounds_the_true_error_of_free_bodies_too() {
     ratios.check();
 }
 
-/// Free spheroids in shear, on coarse panels: the error is that of the angular velocity (Jeffery 1922).
+/// Free spheroids in shear, on coarse panels: the error is that of the angular velocity (Jeffery
+/// 1922).
 #[test]
 fn bounds_the_true_error_in_shear() {
     let mut rng = Rng::with_seed(4);
@@ -275,14 +277,16 @@ fn bounds_the_true_error_in_shear() {
             angular_velocity: background.angular_velocity() + lambda * turning,
         };
         let truth = error_of_motion(&answer, exact, 1.0);
-        // The density is a polynomial: coarse panels do, and what is left is rounding, as the estimate must see.
+        // The density is a polynomial: coarse panels do, and what is left is rounding, as the
+        // estimate must see.
         let estimate = answer.error_estimate;
         println!("{case}: estimate {estimate:.1e}, error {truth:.1e}");
         assert!(truth <= estimate && estimate <= 1e-12);
     }
 }
 
-/// A squirmer's flow in closed form (Blake 1971): $p = -2 b_2 P_2(\cos\theta)/r^3$ and the stresslet $4\pi b_2 (e e - I/3)$, with coarse panels.
+/// A squirmer's flow in closed form (Blake 1971): $p = -2 b_2 P_2(\cos\theta)/r^3$ and the
+/// stresslet $4\pi b_2 (e e - I/3)$, with coarse panels.
 #[test]
 fn pressures_and_stresslets_are_within_their_estimates() {
     let slip = Slip::squirmer([1.5, 3.0]);

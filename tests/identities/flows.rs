@@ -1,4 +1,5 @@
-//! Flows of computed densities: against known ones inside and outside, against the Stokes equations, and far away.
+//! Flows of computed densities: against known ones inside and outside, against the Stokes
+//! equations, and far away.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -61,7 +62,8 @@ fn density(solver: &DirichletSolver, stokeslets: &[Stokeslet]) -> SurfaceModes {
     solver.solve(&data.modes)
 }
 
-/// Largest error of the velocity at `targets`, and of the pressure's differences between them, relative to the largest there.
+/// Largest error of the velocity at `targets`, and of the pressure's differences between them,
+/// relative to the largest there.
 fn errors(
     solver: &DirichletSolver,
     stokeslets: &[Stokeslet],
@@ -272,8 +274,8 @@ fn decay() {
     );
 }
 
-/// The tolerance of an evaluation, relative to the density (pressure: to the density over the distance), against a much finer
-/// evaluation.
+/// The tolerance of an evaluation, relative to the density (pressure: to the density over the
+/// distance), against a much finer evaluation.
 #[test]
 fn evaluation_keeps_its_tolerance() {
     let ring = vec![stokeslet([0.7, 0.6, 0.1], [1.0, -0.5, 0.8])];

@@ -1,4 +1,5 @@
-//! What holds exactly: known flows, integral identities, special functions, and bounds of the error.
+//! What holds exactly: known flows, integral identities, special functions, and bounds of the
+//! error.
 
 #[path = "../common/mod.rs"]
 mod ask;

@@ -1,5 +1,5 @@
-//! Layer operators against what is known of them: eigenvalues on the sphere (`data/sphere_harmonics.md`), and Gauss's identities
-//! on every kind of body.
+//! Layer operators against what is known of them: eigenvalues on the sphere
+//! (`data/sphere_harmonics.md`), and Gauss's identities on every kind of body.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -25,7 +25,8 @@ enum Basis {
     X,
 }
 
-/// Orthonormal $\bar P_l^m(\cos\theta)$ for one $m$ and every `l <= L_MAX`, divided by $\sin\theta$ if `m > 0`.
+/// Orthonormal $\bar P_l^m(\cos\theta)$ for one $m$ and every `l <= L_MAX`, divided by $\sin\theta$
+/// if `m > 0`.
 fn legendre(m: usize, sin: f64, cos: f64) -> Vec<f64> {
     let mut p = vec![0.0; L_MAX + 1];
     let mut first = (1.0 / (4.0 * PI)).sqrt();
@@ -50,7 +51,8 @@ fn legendre(m: usize, sin: f64, cos: f64) -> Vec<f64> {
     p
 }
 
-/// $Y$, $dY/d\theta$ and $m Y/\sin\theta$ for $Y = \bar P_l^m$, all `[m][l]`, at one point of the unit sphere.
+/// $Y$, $dY/d\theta$ and $m Y/\sin\theta$ for $Y = \bar P_l^m$, all `[m][l]`, at one point of the
+/// unit sphere.
 struct Harmonics {
     y: Vec<Vec<f64>>,
     slope: Vec<Vec<f64>>,
@@ -146,7 +148,8 @@ fn discretize(curve: Arc<dyn GeneratingCurve>, panels: Panels, order: usize) -> 
     Discretization::new(curve, panels, order).expect("nodes")
 }
 
-/// Largest errors, in the norm over the surface, relative to the result and to the density, over every degree and order.
+/// Largest errors, in the norm over the surface, relative to the result and to the density, over
+/// every degree and order.
 fn worst(layer: LayerPotential, panels: usize, order: usize) -> (f64, f64) {
     let sphere = Arc::new(Spheroid::sphere(1.0).expect("a sphere"));
     let panels = Panels::uniform(&*sphere, panels).expect("panels");
@@ -309,8 +312,8 @@ fn some_density(body: &Discretization) -> SurfaceModes {
     SurfaceModes::sample(body, 12, field).modes
 }
 
-/// The mean of a Stokes flow over a sphere of radius `R` around everything that drives it is $F / 6 \pi R$, however the force `F`
-/// is distributed.
+/// The mean of a Stokes flow over a sphere of radius `R` around everything that drives it is $F / 6
+/// \pi R$, however the force `F` is distributed.
 #[test]
 fn net_force() {
     for body in bodies() {

@@ -1,4 +1,5 @@
-//! The thesis's test of section 3.6.1: a flow of known Stokeslets inside a spheroid, found again from its boundary values.
+//! The thesis's test of section 3.6.1: a flow of known Stokeslets inside a spheroid, found again
+//! from its boundary values.
 
 use std::sync::Arc;
 

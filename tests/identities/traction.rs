@@ -35,7 +35,8 @@ fn curves() -> [Shape; 3] {
 }
 
 fn solved(body: Body, background: LinearFlow) -> (Answer, SurfaceModes) {
-    // Tractions take a derivative of the density: panels that serve velocities to 1e-12 are not enough.
+    // Tractions take a derivative of the density: panels that serve velocities to 1e-12 are not
+    // enough.
     let resolution = Resolution {
         panels: Panels::equal_arcs(&*body.shape, 10).expect("panels"),
         order: 16,
@@ -60,7 +61,8 @@ fn nodes_of(answer: &Answer) -> &Discretization {
     answer.flow.bodies()[0].disturbance.discretization()
 }
 
-/// The largest difference of a traction from a function of the place, at a few azimuths of every node.
+/// The largest difference of a traction from a function of the place, at a few azimuths of every
+/// node.
 fn error(answer: &Answer, exact: impl Fn(Vector3<f64>) -> Vector3<f64>) -> f64 {
     let traction = traction_of(answer);
     let mut most = 0.0f64;
@@ -103,8 +105,9 @@ fn of_spheres_is_exact() {
 
 /// -(F/4 pi a b c) times the distance of the tangent plane from the centre (Brenner 1964).
 ///
-/// The density is analytic as far as the foci of the meridian. From the end of a panel at the slender one's pole these are only 0.64 half
-/// lengths away with 10 panels, 1.3 with 20: 16 nodes then gain a factor of a hundred or so, until rounding is left.
+/// The density is analytic as far as the foci of the meridian. From the end of a panel at the
+/// slender one's pole these are only 0.64 half lengths away with 10 panels, 1.3 with 20: 16 nodes
+/// then gain a factor of a hundred or so, until rounding is left.
 #[test]
 fn of_spheroids_under_a_force_converges_to_the_exact_one() {
     for (polar, equatorial, panels, floor) in [
@@ -141,8 +144,8 @@ fn of_spheroids_under_a_force_converges_to_the_exact_one() {
     }
 }
 
-/// Of a single layer, by close evaluation against the adjoint of the double layer: the limits are -1/2 and +1/2 of the density plus the
-/// principal value, from outside and inside.
+/// Of a single layer, by close evaluation against the adjoint of the double layer: the limits are
+/// -1/2 and +1/2 of the density plus the principal value, from outside and inside.
 #[test]
 fn of_a_single_layer_jumps_by_the_density() {
     for curve in curves() {
@@ -171,7 +174,8 @@ fn of_a_single_layer_jumps_by_the_density() {
     }
 }
 
-/// The traction of a double layer is the same on both sides (Lyapunov and Tauber), and its integrals vanish.
+/// The traction of a double layer is the same on both sides (Lyapunov and Tauber), and its
+/// integrals vanish.
 #[test]
 fn of_a_double_layer_does_not_jump() {
     for curve in curves() {

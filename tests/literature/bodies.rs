@@ -1,4 +1,5 @@
-//! Tori, capsules and the red cell against tables made by independent methods (`data/README.md`), and against themselves.
+//! Tori, capsules and the red cell against tables made by independent methods (`data/README.md`),
+//! and against themselves.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -44,7 +45,8 @@ fn published_drag_of_tori() {
     }
 }
 
-/// The thin torus of Johnson & Wu (J. Fluid Mech. 95, 263, 1979): slender-body theory, with an error of the thickness squared.
+/// The thin torus of Johnson & Wu (J. Fluid Mech. 95, 263, 1979): slender-body theory, with an
+/// error of the thickness squared.
 #[test]
 fn slender_tori() {
     for (minor, bar) in [(0.01f64, 2e-3), (0.001, 5e-5)] {
@@ -88,7 +90,8 @@ fn capsules() {
                 assert!(error(last, value) <= 1e-11);
             }
         }
-        // The singularity at the joint makes the error fall like the cube of the panels there: eightfold a level.
+        // The singularity at the joint makes the error fall like the cube of the panels there: by a
+        // factor of eight for each level of refinement.
         assert!(errors.windows(2).take(2).all(|e| e[1] < e[0] / 30.0));
         assert!(errors[4] <= 5e-14);
     }

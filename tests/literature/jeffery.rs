@@ -1,4 +1,5 @@
-//! Free spheroids in linear flows (Jeffery 1922): $\Omega = \omega + \Lambda\, d \times E d$ with $\Lambda = (q^2 - 1)/(q^2 + 1)$ for aspect ratio $q$.
+//! Free spheroids in linear flows (Jeffery 1922): $\Omega = \omega + \Lambda\, d \times E d$ with
+//! $\Lambda = (q^2 - 1)/(q^2 + 1)$ for aspect ratio $q$.
 
 use std::sync::Arc;
 
@@ -17,7 +18,8 @@ fn random_vector(rng: &mut Rng) -> Vector3<f64> {
     Vector3::from_fn(|_, _| 2.0 * rng.f64() - 1.0)
 }
 
-/// The largest errors of velocity and angular velocity at random places and orientations, in the laboratory.
+/// The largest errors of velocity and angular velocity at random places and orientations, in the
+/// laboratory.
 fn errors(solver: &MobilitySolver, aspect: f64, flow: &LinearFlow, rng: &mut Rng) -> f64 {
     let mut worst = 0.0f64;
     for _ in 0..20 {

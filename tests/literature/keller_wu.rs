@@ -1,4 +1,5 @@
-//! Spheroids that swim by slip from pole to pole (Keller & Wu 1977), and the same formula continued to oblate ones.
+//! Spheroids that swim by slip from pole to pole (Keller & Wu 1977), and the same formula continued
+//! to oblate ones.
 
 use std::f64::consts::PI;
 
@@ -7,7 +8,8 @@ use axistokes::{Body, GeneratingCurve, Slip, Spheroid, Suspension};
 
 use super::ask::answer;
 
-/// Swimming speed over slip speed: with $\tau_0$ the inverse eccentricity, $\tau_0 (\tau_0 - (\tau_0^2 - 1) \operatorname{arcoth} \tau_0)$.
+/// Swimming speed over slip speed: with $\tau_0$ the inverse eccentricity, $\tau_0 (\tau_0 -
+/// (\tau_0^2 - 1) \operatorname{arcoth} \tau_0)$.
 fn speed(polar: f64, equatorial: f64) -> f64 {
     let square = polar * polar / ((polar - equatorial) * (polar + equatorial));
     let tau = square.abs().sqrt();
@@ -19,8 +21,9 @@ fn speed(polar: f64, equatorial: f64) -> f64 {
     }
 }
 
-/// The same by the reciprocal theorem: $\frac{1}{3V} \int (1 - \nu_z^2)\, x \cdot \nu\, d\Gamma$, since the traction of a translating
-/// ellipsoid is in proportion to $x \cdot \nu$; midpoint rule in $\cos$ of the eccentric angle.
+/// The same by the reciprocal theorem: $\frac{1}{3V} \int (1 - \nu_z^2)\, x \cdot \nu\, d\Gamma$,
+/// since the traction of a translating ellipsoid is in proportion to $x \cdot \nu$; midpoint rule
+/// in $\cos$ of the eccentric angle.
 fn speed_by_reciprocity(polar: f64, equatorial: f64) -> f64 {
     let n = 100_000;
     let sum = (0..n).map(|k| {

@@ -89,7 +89,8 @@ fn about_the_center_of_reaction_nothing_couples() {
 fn about_another_point_a_sphere_couples_as_in_closed_form() {
     let pi = std::f64::consts::PI;
     let found = matrices(Arc::new(Spheroid::sphere(1.0).expect("a sphere")));
-    // About a point at height h below the centre the sphere's centre moves with U + h Omega x e_z, and T = h e_z x F.
+    // If the point of reference lies h below the centre, the sphere's centre moves with U + h Omega
+    // x e_z, and T = h e_z x F.
     let h = 0.5;
     let below = found.resistance.about(Vector3::new(0.0, 0.0, -h));
     let functions = below.scalar_functions();

@@ -17,7 +17,8 @@ fn of_a_body_without_fore_aft_symmetry() {
         let panels = Panels::resolving(&*curve, 16, 1e-10).expect("panels");
         let resistor = Resistor::new(&curve, panels, 16);
         let size = resistor.size();
-        // Unit velocities and angular velocities, torques in units of the body's size: all entries are alike.
+        // Unit velocities and angular velocities, torques in units of the body's size: all entries
+        // are alike.
         let mut matrix = Matrix6::zeros();
         for k in 0..6 {
             let unit = Vector3::ith(k % 3, 1.0);

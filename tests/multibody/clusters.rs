@@ -95,7 +95,8 @@ fn look_the_same_from_any_side() {
             0.0
         }
     });
-    // Forces per velocity are a length, torques per velocity an area, torques per angular velocity a volume.
+    // Forces per velocity are a length, torques per velocity an area, torques per angular velocity
+    // a volume.
     let power = |i: usize, j: usize| 1 + (i / 3 % 2) as i32 + (j / 3 % 2) as i32;
     let lengths = DMatrix::from_fn(count, count, |i, j| 3f64.powi(power(i, j)));
     let mobility = |s: &Suspension| {

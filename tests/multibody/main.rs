@@ -1,4 +1,5 @@
-//! Many bodies against values that were found in other ways (`data/README.md`), against exact flows, and against themselves.
+//! Many bodies against values that were found in other ways (`data/README.md`), against exact
+//! flows, and against themselves.
 
 #[path = "../common/mod.rs"]
 mod ask;

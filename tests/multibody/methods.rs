@@ -36,7 +36,8 @@ fn four() -> Suspension {
     Suspension::new(bodies.collect::<Vec<_>>())
 }
 
-/// The largest difference of forces and torques, relative to the largest, and of motions, relative to the largest speed.
+/// The largest difference of forces and torques, relative to the largest, and of motions, relative
+/// to the largest speed.
 fn difference(a: &Answer, b: &Answer) -> f64 {
     let largest = b.bodies.iter().fold(0.0f64, |most, body| {
         most.max(body.wrench.force.norm())

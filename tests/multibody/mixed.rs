@@ -27,8 +27,9 @@ fn three() -> Vec<Body> {
     bodies
 }
 
-/// Two discs that move side by side: nothing drives fluid through the narrow gap, whose tractions would be so large that they turn what little the velocity
-/// is off by into torques. By the reciprocal theorem the torque is the force when one disc turns.
+/// Two discs that move side by side: nothing drives fluid through the narrow gap, whose tractions
+/// would be so large that they turn what little the velocity is off by into torques. By the
+/// reciprocal theorem the torque is the force when one disc turns.
 #[test]
 fn torques_in_a_narrow_gap_are_no_worse_than_estimated() {
     let disc = spheroid(0.05, 1.0);
@@ -60,7 +61,8 @@ fn torques_in_a_narrow_gap_are_no_worse_than_estimated() {
     }
 }
 
-/// Residuals are small in the mean: in a gap, where panels are short, an iteration leaves more. More panels would not help.
+/// The residual is small in the mean over all nodes. In a gap, where panels are short, an iteration
+/// leaves larger errors, and more panels would not help.
 #[test]
 fn what_an_iteration_leaves_in_a_gap_is_iterated_away() {
     let weight = pushed(-Vector3::z(), Vector3::zeros());
@@ -156,7 +158,8 @@ fn two_mixed_problems_are_reciprocal() {
     println!("{one} {other}: {:.1e}", (one - other).abs() / of_one);
 }
 
-/// Two squirmers (Blake 1971) on one axis swim as alone, but for the flow of the other's stresslet and dipole at their centres.
+/// Two squirmers (Blake 1971) on one axis swim as alone, but for the flow of the other's stresslet
+/// and dipole at their centres.
 #[test]
 fn squirmers_far_apart_swim_as_alone() {
     let r = 1000.0;
@@ -168,7 +171,8 @@ fn squirmers_far_apart_swim_as_alone() {
     });
     let answer = answer(&Suspension::new(swimmers.to_vec()), 1e-12);
     let alone = 2.0 / 3.0 * b[0];
-    // On the axis at distance r before (+) or behind (-) the squirmer: 2/3 b1 / r^3 -+ b2 / r^2 and, of its second mode, +- b2 / r^4.
+    // On the axis at distance r before (+) or behind (-) the squirmer: 2/3 b1 / r^3 -+ b2 / r^2
+    // and, of its second mode, +- b2 / r^4.
     let dipole = alone / r.powi(3);
     let stresslet = b[1] / r.powi(2);
     let errors = [1.0, -1.0].map(|sign| {
@@ -184,7 +188,8 @@ fn squirmers_far_apart_swim_as_alone() {
     assert!(errors.iter().all(|&error| error <= 2e-11));
 }
 
-/// In a shear, a pair of free spheres far apart turns with half the vorticity and drifts with the flow at its centres.
+/// In a shear, a pair of free spheres far apart turns at half the vorticity and drifts with the
+/// flow at its centres.
 #[test]
 fn free_spheres_far_apart_turn_with_the_fluid() {
     let background = LinearFlow::shear(0.8, Vector3::x(), Vector3::y());
@@ -206,7 +211,8 @@ fn free_spheres_far_apart_turn_with_the_fluid() {
         1e-10,
     );
     let rate = background.strain_rate();
-    // Of the other's stresslet S = 20/3 pi E: u = -3/(8 pi) (d.S.d) d / r^2 and half its curl, to the leading order (Batchelor & Green 1972).
+    // Of the other's stresslet S = 20/3 pi E: u = -3/(8 pi) (d.S.d) d / r^2 and half its curl, to
+    // the leading order (Batchelor & Green 1972).
     for (k, body) in answer.bodies.iter().enumerate() {
         let d = if k == 0 {
             -line.into_inner()
@@ -229,7 +235,8 @@ fn free_spheres_far_apart_turn_with_the_fluid() {
     }
 }
 
-/// Stokeslets in eight bodies of different shapes, sizes and directions: their flow must come out everywhere outside.
+/// Stokeslets in eight bodies of different shapes, sizes and directions: their flow must come out
+/// everywhere outside.
 fn known_flow(tolerances: &[f64]) {
     let mut rng = fastrand::Rng::with_seed(5);
     let curves: [Curve; 4] = [

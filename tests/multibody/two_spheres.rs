@@ -30,9 +30,11 @@ fn table() -> Vec<Row> {
 
 /// What was found, and how well.
 struct Found {
-    /// The largest error of a force or torque, relative to the value or to a hundredth of the largest of the motion, whichever is larger.
+    /// The largest error of a force or torque, relative to the value or to a hundredth of the
+    /// largest of the motion, whichever is larger.
     of_values: f64,
-    /// The largest error of forces and torques relative to the largest of them, and of those that should vanish.
+    /// The largest error of forces and torques relative to the largest of them, and of those that
+    /// should vanish.
     of_largest: f64,
     /// The same for stresslets, relative to their largest.
     of_stresslets: f64,

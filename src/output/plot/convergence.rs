@@ -1,11 +1,12 @@
-//! Figure 3.2: a heat map of the relative error over panels and modes, and curves of the absolute error.
+//! Figure 3.2: a heat map of the relative error over panels and modes, and curves of the absolute
+//! error.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
+use super::canvas::{Canvas, PlotError, diagrams, failed, power_of_ten, write};
 use super::colour::{MISSING, ink, viridis};
 use super::frame::{Axis, Frame, Style, inner, names, outline};
-use super::{Canvas, PlotError, diagrams, failed, power_of_ten, write};
 use crate::study::errors::ErrorTable;
 
 /// The decades of error that the colours and the vertical axis cover.

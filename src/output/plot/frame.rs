@@ -3,8 +3,8 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
+use super::canvas::{Canvas, DIAGRAM, PlotError, failed, write, write_upwards};
 use super::colour::GRID;
-use super::{Canvas, PlotError, failed, write, write_upwards};
 
 /// Margins of the frame in its diagram: left, top, right, bottom.
 const MARGIN: [i32; 4] = [76, 44, 168, 58];
@@ -173,10 +173,7 @@ impl<'a, 'b> Frame<'a, 'b> {
 /// Corner and size of the frame in the diagram at `corner`.
 pub fn inner(corner: (i32, i32)) -> ((i32, i32), (i32, i32)) {
     let [left, top, right, bottom] = MARGIN;
-    let size = (
-        super::DIAGRAM.0 - left - right,
-        super::DIAGRAM.1 - top - bottom,
-    );
+    let size = (DIAGRAM.0 - left - right, DIAGRAM.1 - top - bottom);
     ((corner.0 + left, corner.1 + top), size)
 }
 

@@ -1,8 +1,8 @@
 //! Figure 3.3: time of each stage against unknowns, with fitted exponents.
 
+use super::canvas::{Canvas, PlotError, diagrams, power_of_ten};
 use super::colour::DISTINCT;
 use super::frame::{Axis, Frame, Style};
-use super::{Canvas, PlotError, diagrams, power_of_ten};
 use crate::study::timing::{STAGES, TimingTable};
 
 /// A column for each order.

@@ -9,7 +9,8 @@ use nalgebra::Vector3;
 
 use super::exact::Stokeslets;
 
-/// A body, with point forces on both sides of its surface, and the modes that their flows have on it down to rounding.
+/// A body, with point forces on both sides of its surface, and the modes that their flows have on
+/// it down to rounding.
 pub struct Body {
     pub name: &'static str,
     pub curve: Arc<dyn GeneratingCurve>,

@@ -36,7 +36,8 @@ impl Stokeslets {
     }
 }
 
-/// $8\pi\, \partial_j u_i = (f_j d_i - f_i d_j + (d \cdot f)\, \delta_{ij})/d^3 - 3 (d \cdot f)\, d_i d_j/d^5$, with $d$ from the force's place.
+/// $8\pi\, \partial_j u_i = (f_j d_i - f_i d_j + (d \cdot f)\, \delta_{ij})/d^3 - 3 (d \cdot f)\,
+/// d_i d_j/d^5$, with $d$ from the force's place.
 fn gradient(stokeslet: &Stokeslet, x: Vector3<f64>) -> Matrix3<f64> {
     let (d, f) = (x - stokeslet.at, stokeslet.force);
     let along = d.dot(&f);

@@ -1,4 +1,5 @@
-//! Identities of the layer potentials that hold off the surface and on it, for densities that are known without solving anything.
+//! Identities of the layer potentials that hold off the surface and on it, for densities that are
+//! known without solving anything.
 
 use axistokes::body::flow::Side;
 use axistokes::body::layers::Layers;
@@ -36,7 +37,8 @@ fn worst(
     worst
 }
 
-/// $D[U + \Omega \times x]$ is minus the motion inside, nothing outside, and half of that as a principal value.
+/// $D[U + \Omega \times x]$ is minus the motion inside, nothing outside, and half of that as a
+/// principal value.
 #[test]
 fn the_double_layer_of_a_rigid_motion_is_that_motion_inside() {
     let (u, omega) = (Vector3::new(0.6, -0.3, 0.8), Vector3::new(-0.5, 0.7, 0.4));
@@ -71,8 +73,9 @@ fn the_double_layer_of_a_rigid_motion_is_that_motion_inside() {
     }
 }
 
-/// Green's formula: $S[\sigma\nu] - D[u]$ is a flow $u$ with no singularity inside the body there, and nothing outside; for a flow with no
-/// singularity outside it is nothing inside and $-u$ there. Pressures included, with no constant left open.
+/// Green's formula: $S[\sigma\nu] - D[u]$ is a flow $u$ with no singularity inside the body there,
+/// and nothing outside; for a flow with no singularity outside it is nothing inside and $-u$ there.
+/// Pressures included, with no constant left open.
 #[test]
 fn layers_of_a_flow_give_it_back() {
     for body in bodies() {

@@ -39,8 +39,9 @@ fn normal(nodes: &Discretization, place: &Place) -> Vector3<f64> {
     Vector3::new(-t.z * cos, -t.z * sin, t.r).normalize()
 }
 
-/// From inside to outside, the double layer's velocity jumps by the density and its traction does not; the single layer's velocity does not
-/// jump, its traction does by minus the density, its pressure by the density's normal component.
+/// From inside to outside, the double layer's velocity jumps by the density and its traction does
+/// not; the single layer's velocity does not jump, its traction does by minus the density, its
+/// pressure by the density's normal component.
 #[test]
 fn across_the_surface_are_those_of_potential_theory() {
     for body in bodies() {
@@ -89,7 +90,8 @@ fn across_the_surface_are_those_of_potential_theory() {
     }
 }
 
-/// The trace of the gradient vanishes, and what is called gradient is that of the velocity: against central differences of fourth order.
+/// The trace of the gradient vanishes, and what is called gradient is that of the velocity: against
+/// central differences of fourth order.
 #[test]
 fn off_the_surface_the_gradient_is_that_of_the_velocity() {
     const STEP: f64 = 1e-3;

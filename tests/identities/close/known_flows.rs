@@ -76,7 +76,8 @@ impl Known {
         self.solver.discretization()
     }
 
-    /// The flow at points; the pressure inside, which the velocities leave open, less what it is off by at the centre.
+    /// The flow at points; the pressure inside, which the velocities determine up to a constant, is
+    /// shifted to be exact at the centre.
     fn at(&self, targets: &[Point3<f64>]) -> Vec<FlowGradientAt> {
         let flow = self.solver.flow(&self.density);
         let mut found = flow.gradient_at(targets, 1e-15).expect("a flow");
@@ -96,8 +97,8 @@ impl Known {
     }
 }
 
-/// At every distance from places of every kind; and no distance is worse than another, on normals from a pole, from a panel's end, from a
-/// node and from anywhere.
+/// At every distance from places of every kind; and no distance is worse than another, on normals
+/// from a pole, from a panel's end, from a node and from anywhere.
 #[test]
 fn thesis_spheroid_at_every_distance_from_both_sides() {
     const STEPS: usize = 200;
@@ -120,7 +121,8 @@ fn thesis_spheroid_at_every_distance_from_both_sides() {
     }
 }
 
-/// On the surface, at the order of the panels, and one less for what takes a derivative of the density; down to a floor.
+/// On the surface, at the order of the panels, and one less for what takes a derivative of the
+/// density; down to a floor.
 #[test]
 fn errors_on_the_surface_fall_with_the_panels() {
     let [spheroid, ..] = bodies();
@@ -159,7 +161,8 @@ fn errors_on_the_surface_fall_with_the_panels() {
 #[test]
 fn other_bodies_from_outside() {
     for body in bodies() {
-        // Order and panels relative to the distance from the forces; levels of panels towards joints.
+        // Order and panels relative to the distance from the forces; levels of panels towards
+        // joints.
         let (parts, joints, bars): (&[(usize, f64)], _, _) = match body.name {
             "spheroid 1 x 0.5" => (&[(16, 0.4), (10, 0.25)], 0, BARS),
             "torus 1 + 0.4" => (&[(16, 0.6)], 0, BARS),
@@ -182,8 +185,9 @@ fn other_bodies_from_outside() {
     }
 }
 
-/// At a capsule's joint the density's second derivative is infinite: derivatives are as good as the shortest panels there are short, velocities
-/// good all along; a hundredth away nothing is left of it.
+/// At a capsule's joint the density's second derivative is infinite: derivatives are as good as the
+/// shortest panels there are short, velocities good all along; a hundredth away nothing is left of
+/// it.
 #[test]
 fn next_to_a_joint_errors_fall_with_the_shortest_panels() {
     let [_, _, capsule, ..] = bodies();

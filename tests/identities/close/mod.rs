@@ -1,4 +1,5 @@
-//! Close evaluation: velocity, pressure and velocity gradient at any distance from the surface, zero included.
+//! Close evaluation: velocity, pressure and velocity gradient at any distance from the surface,
+//! zero included.
 
 mod bodies;
 mod exact;

@@ -40,7 +40,8 @@ fn difference(a: &FlowGradientAt, b: &FlowGradientAt) -> f64 {
         .max((a.gradient - b.gradient).norm())
 }
 
-/// Points without a direction or on something that is divided, each with one a little way off on the same side, where fields are the same.
+/// Points where a formula has no direction (on the axis) or the surface is divided (at the ends of
+/// panels), each with a point a little way off on the same side, where the fields are the same.
 #[test]
 fn degenerate_points_have_the_values_of_their_neighbours() {
     let nodes = spheroid();

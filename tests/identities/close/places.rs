@@ -48,7 +48,8 @@ pub fn off(discretization: &Discretization, place: Place, distance: f64) -> Poin
     Point3::new(r * cos, r * sin, z)
 }
 
-/// Points at a distance from places, on one side; without those that are on the other one again, as next to a thin rim.
+/// Points at a distance from places, on one side; without those that are on the other one again, as
+/// next to a thin rim.
 pub fn targets(
     discretization: &Discretization,
     places: &[Place],

@@ -45,32 +45,27 @@ pub(super) struct AccuracyOptions {
     pub(super) accuracy: Accuracy,
     /// See [`super::Case::tolerance_by_hand`].
     pub(super) tolerance_by_hand: Option<f64>,
-    /// See [`super::Case::estimate`].
-    pub(super) estimate: Option<bool>,
 }
 
 /// Reads `[accuracy]`.
 pub(super) fn read_accuracy(node: Node<'_>) -> Result<AccuracyOptions, CaseError> {
-    let section = Section::new(node, &["tolerance", "panels", "order", "modes", "estimate"])?;
+    let section = Section::new(node, &["tolerance", "panels", "order", "modes"])?;
     if section.is_empty() {
         return Err(section
             .node
             .error("[accuracy] is empty: expected tolerance, or panels, order and modes"));
     }
-    let estimate = section.read("estimate", Node::boolean)?;
     let tolerance = section.read("tolerance", read_tolerance)?;
     let by_hand = ["panels", "order", "modes"].iter();
     if by_hand.filter_map(|key| section.optional(key)).count() == 0 {
         return Ok(AccuracyOptions {
             accuracy: tolerance.map(Accuracy::Tolerance).unwrap_or_default(),
             tolerance_by_hand: None,
-            estimate,
         });
     }
     Ok(AccuracyOptions {
         accuracy: read_by_hand(&section)?,
         tolerance_by_hand: tolerance,
-        estimate,
     })
 }
 

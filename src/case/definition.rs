@@ -27,8 +27,6 @@ pub struct Case {
     /// Tolerance of sums and iterations if the discretisation is chosen by hand; `None` leaves it
     /// to the solver, and is always so if `accuracy` is a tolerance.
     pub tolerance_by_hand: Option<f64>,
-    /// Whether errors are estimated, which takes a second solution; true if not given.
-    pub estimate: bool,
     /// How the linear system is solved.
     pub solver: SolverOptions,
     /// Where velocity and pressure are wanted.

@@ -99,7 +99,6 @@ impl Case {
             background,
             accuracy: accuracy.accuracy,
             tolerance_by_hand: accuracy.tolerance_by_hand,
-            estimate: accuracy.estimate.unwrap_or(true),
             solver: solver.unwrap_or_default(),
             probes: probes.unwrap_or_default(),
             test,

@@ -9,7 +9,6 @@ impl Case {
         let mut missing: Vec<(usize, String)> = Vec::new();
         let time = self.time.as_ref().map(|time| time.line);
         missing.extend(time.map(|line| (line, "[time]".to_owned())));
-        missing.extend(mixed(&self.bodies));
         if self.test.is_some() {
             let line = self.background.as_ref().map(|s| s.line);
             missing.extend(line.map(|line| (line, "[background] beside [test]".to_owned())));
@@ -24,16 +23,9 @@ impl Case {
     }
 }
 
-/// The first body that is moved in some components and free in others.
-fn mixed(bodies: &[Body]) -> Option<(usize, String)> {
-    let body = bodies.iter().find(|body| body.is_mixed())?;
-    let name = "a body that is imposed in some components and free in others";
-    Some((body.motion.line, name.to_owned()))
-}
-
 /// The first body's motion, if all bodies are free: their equation has no single layer alone.
 fn only_free(bodies: &[Body]) -> Option<(usize, String)> {
-    let free = |body: &Body| matches!(body.motion.value, Motion::Free { .. });
+    let free = |body: &Body| !body.is_mixed() && matches!(body.motion.value, Motion::Free { .. });
     let name = "the single-layer formulation of a free body";
     let line = bodies.first()?.motion.line;
     bodies.iter().all(free).then(|| (line, name.to_owned()))

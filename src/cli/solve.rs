@@ -12,6 +12,9 @@ use axistokes::solve::{SolveError, solve};
 /// Solves a case and prints its report; one that misses its tolerance is printed too, then fails.
 pub fn run(arguments: &Solve) -> Result<(), Failure> {
     let case = Case::read(&arguments.case).map_err(SolveError::from)?;
+    for warning in case.warnings() {
+        streams::complain(&format!("{}: warning: {warning}", case.path.display()));
+    }
     let files = Files::asked(arguments, &case)?;
     let bar = StderrBar::stopped_by_ctrl_c()?;
     let solved = solve(&case, &bar)?;
@@ -41,7 +44,7 @@ const ENOUGH: f64 = 0.1;
 
 /// By how much an error estimate misses the tolerance of the case, if it does.
 pub fn missed(case: &Case, estimate: f64) -> Option<String> {
-    let tolerance = case.tolerance().filter(|&t| estimate > t)?;
+    let tolerance = case.promised_tolerance().filter(|&t| estimate > t)?;
     let factor = estimate / tolerance;
     let residual = case.solver.tolerance.filter(|&r| r > ENOUGH * tolerance);
     let why = residual.map_or(String::new(), |residual| {

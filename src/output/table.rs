@@ -62,7 +62,7 @@ fn write_table(out: &mut String, case: &Case, report: &Report, all: bool) -> fmt
 
 /// How an estimated error stands to the tolerance of the case.
 pub(super) fn error_line(case: &Case, estimate: f64) -> String {
-    let how = match case.tolerance() {
+    let how = match case.promised_tolerance() {
         Some(tolerance) if estimate > tolerance => format!("MISSES the tolerance {tolerance:e}"),
         Some(tolerance) => format!("within the tolerance {tolerance:e}"),
         None => "discretisation chosen by hand".to_owned(),

@@ -2,14 +2,16 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::{Matrix3, Point3, Unit, Vector3};
+use nalgebra::{Matrix3, Point3, Quaternion, Unit, UnitQuaternion, Vector3};
 
-use crate::case::{self, Accuracy, Background, Case, CaseError, Formulation, Method};
-use bodies_of_revolution::{Frame, Insides, RigidMotion, Shape, Wrench};
+use crate::case::{
+    self, Accuracy, Background, BodyOrientation, Case, CaseError, Formulation, Method,
+};
+use bodies_of_revolution::{Frame, Insides, RigidMotion, Shape};
 use stokes_body::dirichlet;
 use stokes_body::kernel::Stokeslet;
 use stokes_body::linear_flow::LinearFlow;
-use stokes_suspension::{self as suspension, Body, Motion, Options, Slip, Suspension};
+use stokes_suspension::{self as suspension, Body, Component, Motion, Options, Slip, Suspension};
 
 /// A case, ready to be solved.
 pub(super) struct Question {
@@ -32,8 +34,7 @@ impl Question {
                     shape
                 }
             };
-            let axis = Unit::new_normalize(body.axis.into());
-            let frame = Frame::along(body.center.into(), axis).scaled(body.scale);
+            let frame = frame(body);
             bodies.push(Body {
                 shape,
                 frame,
@@ -102,21 +103,27 @@ pub(super) fn at_shape(case: &Case, body: &case::Body, error: &dyn std::fmt::Dis
 }
 
 fn motion(case: &Case, body: &case::Body) -> Motion {
-    match body.motion.value {
-        // The known flow takes the place of all that is imposed.
-        _ if case.test.is_some() => Motion::Given(RigidMotion::rest()),
-        case::Motion::Rigid {
-            velocity,
-            angular_velocity,
-        } => Motion::Given(RigidMotion {
-            velocity: velocity.into(),
-            angular_velocity: angular_velocity.into(),
-        }),
-        case::Motion::Free { force, torque } => Motion::Free(Wrench {
-            force: force.into(),
-            torque: torque.into(),
-        }),
+    // The known flow takes the place of all that is imposed.
+    if case.test.is_some() {
+        return Motion::Given(RigidMotion::rest());
     }
+    Motion::components(body.components.map(|component| match component {
+        case::Component::Imposed(value) => Component::Imposed(value),
+        case::Component::Free(value) => Component::Free(value),
+    }))
+}
+
+/// Where a body is.
+fn frame(body: &case::Body) -> Frame {
+    let center = body.center.into();
+    let frame = match body.orientation {
+        BodyOrientation::Axis(axis) => Frame::along(center, Unit::new_normalize(axis.into())),
+        BodyOrientation::Quaternion([w, x, y, z]) => {
+            let rotation = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
+            Frame::new(center, rotation)
+        }
+    };
+    frame.scaled(body.scale)
 }
 
 /// The slip of a body, or the known flow in its place; in the body's frame.
@@ -181,7 +188,9 @@ pub(crate) fn options(case: &Case) -> Options {
             panels,
             order,
             modes,
-            tolerance: suspension::Accuracy::BY_HAND,
+            tolerance: case
+                .tolerance_by_hand
+                .unwrap_or(suspension::Accuracy::BY_HAND),
         },
     };
     let mut options = Options::new(accuracy);

@@ -3,7 +3,7 @@
 use nalgebra::{Point3, Vector3};
 
 use super::question::{Question, known_velocity};
-use crate::case::{self, Case};
+use crate::case::{Case, Component};
 use crate::output::{
     BodyReport, Discretization, KnownFlowReport, ProbeReport, Report, Stop, Timings,
 };
@@ -69,13 +69,9 @@ fn bodies(
         let velocities = [found.motion.velocity, found.motion.angular_velocity].map(Into::into);
         let forces = [found.wrench.force, found.wrench.torque].map(Into::into);
         // What is given comes back as it was.
-        let ([velocity, angular_velocity], [force, torque]) = match case.bodies[i].motion.value {
-            _ if case.test.is_some() => ([[0.0; 3]; 2], forces),
-            case::Motion::Rigid {
-                velocity,
-                angular_velocity,
-            } => ([velocity, angular_velocity], forces),
-            case::Motion::Free { force, torque } => (velocities, [force, torque]),
+        let ([velocity, angular_velocity], [force, torque]) = match case.test {
+            Some(_) => ([[0.0; 3]; 2], forces),
+            None => given_back(&case.bodies[i].components, velocities, forces),
         };
         Ok(BodyReport {
             velocity,
@@ -89,6 +85,21 @@ fn bodies(
         })
     });
     reports.collect()
+}
+
+/// What was found, but where the case gave a number that number.
+fn given_back(
+    components: &[Component; 6],
+    mut velocities: [[f64; 3]; 2],
+    mut forces: [[f64; 3]; 2],
+) -> ([[f64; 3]; 2], [[f64; 3]; 2]) {
+    for (k, component) in components.iter().enumerate() {
+        match *component {
+            Component::Imposed(value) => velocities[k / 3][k % 3] = value,
+            Component::Free(value) => forces[k / 3][k % 3] = value,
+        }
+    }
+    (velocities, forces)
 }
 
 fn probes(case: &Case, answer: &Answer) -> Vec<ProbeReport> {

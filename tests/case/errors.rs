@@ -310,11 +310,6 @@ fn accuracy_that_cannot_be_had() {
         ),
         (
             "tolerance = 1e-8",
-            "estimate = 0",
-            &["case.toml:12:", "accuracy.estimate", "true or false"],
-        ),
-        (
-            "tolerance = 1e-8",
             "panels = 8\norder = 16",
             &["case.toml:11:", "accuracy.modes", "missing"],
         ),
@@ -533,14 +528,6 @@ fn what_is_not_built_is_refused_by_name() {
             &[
                 "case.toml:9:",
                 "not supported yet: the single-layer formulation of a free body",
-            ],
-        ),
-        (
-            "velocity = [0.0, 0.0, 1.0]",
-            "velocity = [0, 0, \"free\"]",
-            &[
-                "case.toml:9:",
-                "not supported yet: a body that is imposed in some components and free in others",
             ],
         ),
         // an error inside a section that is not built comes first

@@ -220,15 +220,9 @@ fn a_tolerance_by_hand_is_not_promised() {
         (Some(1e-6), Some(1e-6))
     );
     assert_eq!(tolerances(&case(by_hand)), (None, None));
-    let both = case(&format!("{by_hand}tolerance = 1e-5\nestimate = false"));
+    let both = case(&format!("{by_hand}tolerance = 1e-5"));
     assert_eq!(tolerances(&both), (Some(1e-5), None));
-    assert_eq!((both.tolerance_by_hand, both.estimate), (Some(1e-5), false));
-    let alone = case("estimate = false");
-    assert_eq!(
-        (alone.accuracy, alone.estimate),
-        (Accuracy::default(), false)
-    );
-    assert!(case(by_hand).estimate);
+    assert_eq!(both.tolerance_by_hand, Some(1e-5));
 }
 
 #[test]

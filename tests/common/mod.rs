@@ -14,6 +14,7 @@ pub fn try_with(suspension: &Suspension, options: &Options) -> Result<Answer, Su
 }
 
 /// The answer to a tolerance.
+#[allow(dead_code, reason = "not every test binary asks so")]
 pub fn answer(suspension: &Suspension, tolerance: f64) -> Answer {
     try_with(suspension, &Options::tolerance(tolerance)).expect("an answer")
 }

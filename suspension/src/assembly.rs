@@ -140,11 +140,20 @@ impl Assembly {
         self.finer.take().map(|finer| *finer)
     }
 
-    /// Keeps the system on the surfaces of the check if there is more than one right-hand side.
+    /// Keeps the system on the surfaces of the check if there is more than one right-hand side, or one body only.
     pub fn keep_finer(&mut self, finer: Self) {
-        if self.solved > 1 {
+        if self.solved > 1 || self.coupling.is_none() {
             self.finer = Some(Box::new(finer));
         }
+    }
+
+    /// Its classes, and those on the surfaces of the check if they are kept.
+    pub fn all_classes(&self) -> Vec<Arc<Class>> {
+        let mut all = self.classes.all().to_vec();
+        if let Some(finer) = &self.finer {
+            all.extend(finer.classes.all().iter().cloned());
+        }
+        all
     }
 
     /// How well it is solved.

@@ -54,6 +54,8 @@ pub(crate) struct Rounds<'a> {
     pub wanted: Option<f64>,
     pub options: &'a Options,
     pub operators: &'a Operators,
+    /// Classes that exist already.
+    pub classes: &'a [Arc<Class>],
     pub viscosity: f64,
     pub progress: &'a dyn Progress,
 }
@@ -141,18 +143,17 @@ impl Rounds<'_> {
     }
 
     /// Finer and finer solutions until the estimated error is below what is wanted or no longer falls. An `assembly`
-    /// for these kinds may have been made before; `classes` exist already.
+    /// for these kinds may have been made before.
     pub fn converge(
         &self,
         mut kinds: Vec<Kind>,
         assembly: Option<Assembly>,
-        classes: &[Arc<Class>],
         start: Option<&Start>,
     ) -> Result<Converged, SuspensionError> {
         let mut tolerances = Tolerances::new(self.tolerance, self.options.residual);
         let mut assembly = match assembly {
             Some(assembly) => assembly,
-            None => self.assemble(&kinds, tolerances, classes)?,
+            None => self.assemble(&kinds, tolerances, self.classes)?,
         };
         // What misses by far is refined anyway, and not compared with finer surfaces before.
         let compared_below = match (self.is_alone(), self.narrow, self.wanted) {
@@ -304,7 +305,7 @@ impl Rounds<'_> {
                 let setup = Setup {
                     tolerances: Tolerances::of_comparison(target),
                     options: self.options,
-                    known: &[],
+                    known: self.classes,
                     operators: self.operators,
                     memory: budget.saturating_sub(2 * needed),
                     keep: Keep::Nothing,

@@ -145,6 +145,7 @@ impl Solver {
             wanted: options.accuracy.wanted(),
             options: &options,
             operators: &operators,
+            classes: &self.classes,
             viscosity: asked.viscosity,
             progress,
         };
@@ -156,8 +157,8 @@ impl Solver {
             best,
             work,
             assembly,
-        } = rounds.converge(kinds, assembly, &self.classes, start)?;
-        self.remember(assembly.classes().all());
+        } = rounds.converge(kinds, assembly, start)?;
+        self.remember(&assembly.all_classes());
         self.assembly = Some(assembly);
         let mut answer = answer(&rounds, best)?;
         let statistics = &mut answer.statistics;

@@ -25,6 +25,7 @@
 //! # Ok::<(), bodies_of_revolution::CurveError>(())
 //! ```
 
+mod arc_length;
 mod biconcave;
 mod capsule;
 #[cfg(test)]
@@ -37,6 +38,7 @@ mod generating_curve;
 mod legendre;
 mod measures;
 mod outline;
+mod panel;
 mod panels;
 mod polar;
 mod polygon;
@@ -44,20 +46,23 @@ mod profile;
 mod profile_file;
 mod quintic;
 mod resolution;
+mod shares;
 mod spheroid;
 mod torus;
 mod validate;
 
+pub use arc_length::arc_length;
 pub use biconcave::Biconcave;
 pub use capsule::Capsule;
 pub use chord::chord_by_quadrature;
 pub use error::{CurveError, LARGEST_ASPECT, LONGEST, SHORTEST};
 pub use function::FunctionCurve;
 pub use generating_curve::{GeneratingCurve, Meridian, Shape, Topology};
-pub use measures::{arc_length, surface_area, volume};
+pub use measures::{surface_area, volume};
 pub(crate) use outline::off_segment;
 pub use outline::{ON_SURFACE, Outline, contains, distance};
-pub use panels::{MOST_PANELS, Panel, Panels};
+pub use panel::Panel;
+pub use panels::{MOST_PANELS, Panels};
 pub use polar::Polar;
 pub use profile::{MOST_POINTS, Profile};
 pub use profile_file::MOST_BYTES;

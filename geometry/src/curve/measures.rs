@@ -15,8 +15,8 @@ pub fn surface_area(curve: &(impl GeneratingCurve + ?Sized), panels: &Panels) ->
     TAU * area
 }
 
-/// The volume of the body, `-pi int r^2 (dz/ds) ds`, with 16 nodes on each panel; negative if the curve is
-/// traversed backwards.
+/// The volume of the body, `-pi int r^2 (dz/ds) ds`, with 16 nodes on each panel; negative if the
+/// curve is traversed backwards.
 pub fn volume(curve: &(impl GeneratingCurve + ?Sized), panels: &Panels) -> f64 {
     let volume = integral(panels.iter().copied(), |s| {
         let r = curve.point(s).r;

@@ -1,7 +1,8 @@
-//! Generating curves: the meridian of a body of revolution, in the half plane `(r, z)` with `r >= 0`.
+//! Generating curves: the meridian of a body of revolution, in the half plane `(r, z)` with
+//! `r >= 0`.
 //!
-//! A curve is traversed so that `(-dz/ds, dr/ds)` points out of the body: from the upper pole (`z > 0`)
-//! to the lower one; a closed loop off the axis clockwise, with r to the right and z up.
+//! A curve is traversed so that `(-dz/ds, dr/ds)` points out of the body: from the upper pole
+//! (`z > 0`) to the lower one; a closed loop off the axis clockwise, with r to the right and z up.
 //!
 //! | curve | type |
 //! |---|---|
@@ -13,8 +14,9 @@
 //! | smooth spline through points, from memory or a file | [`Profile`] |
 //! | any function | [`FunctionCurve`] |
 //!
-//! [`Panels`] cut a curve into intervals for quadrature, by hand or from a tolerance; [`Outline`] tells inside
-//! from outside and measures distances; [`check_simple`] says whether a curve bounds a body.
+//! [`Panels`] cut a curve into intervals for quadrature, by hand or from a tolerance; [`Outline`]
+//! tells inside from outside and measures distances; [`check_simple`] says whether a curve bounds a
+//! body.
 //!
 //! ```
 //! use bodies_of_revolution::{Panels, Spheroid, surface_area};

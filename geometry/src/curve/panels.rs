@@ -53,8 +53,8 @@ impl Panels {
         })
     }
 
-    /// `count` panels, equal in the parameter within each smooth piece; pieces get panels such that the longest
-    /// panel (by arc length) is as short as possible, and at least one.
+    /// `count` panels, equal in the parameter within each smooth piece; pieces get panels such that
+    /// the longest panel (by arc length) is as short as possible, and at least one.
     ///
     /// # Errors
     /// If `count` is less than the number of pieces, or more than [`MOST_PANELS`].
@@ -67,8 +67,9 @@ impl Panels {
         })
     }
 
-    /// `count` panels of equal arc length within each smooth piece, shared among the pieces like [uniform](Self::uniform)
-    /// ones: where the parameter runs faster here than there, these resolve more with as many.
+    /// `count` panels of equal arc length within each smooth piece, shared among the pieces like
+    /// [uniform](Self::uniform) ones: where the parameter runs faster here than there, these
+    /// resolve more with as many.
     ///
     /// # Errors
     /// If `count` is less than the number of pieces, or more than [`MOST_PANELS`].
@@ -152,8 +153,8 @@ impl Panels {
         }
     }
 
-    /// The same panels, bisected until none is more than twice as long (in the parameter) as a neighbour on
-    /// the same smooth piece; a loop of one piece is smooth across its seam too.
+    /// The same panels, bisected until none is more than twice as long (in the parameter) as a
+    /// neighbour on the same smooth piece; a loop of one piece is smooth across its seam too.
     #[must_use]
     pub fn graded(&self) -> Self {
         // A little more than 2, so that roundings of the ends do not count.
@@ -177,8 +178,9 @@ impl Panels {
         }
     }
 
-    /// The same panels, [graded](Self::graded), and at a joint of two smooth pieces bisected until neither side's arc is more than
-    /// twice as long as the other's: a density that varies over the one cannot be smooth over much more of the other.
+    /// The same panels, [graded](Self::graded), and bisected at each joint of two smooth pieces
+    /// until neither arc beside the joint is more than twice as long as the other: a density that
+    /// varies over a short arc varies as fast just beyond the joint.
     #[must_use]
     pub fn graded_across_joints(&self, curve: &(impl GeneratingCurve + ?Sized)) -> Self {
         let mut result = self.graded();
@@ -205,8 +207,9 @@ impl Panels {
         }
     }
 
-    /// The same panels, those at a joint of two smooth pieces bisected towards it `levels` times: there the
-    /// density is not smooth (a capsule's curvature jumps). Each round halves the panels at the joints.
+    /// The same panels, those at a joint of two smooth pieces bisected towards it `levels` times:
+    /// there the density is not smooth (a capsule's curvature jumps). Each round halves the panels
+    /// at the joints.
     ///
     /// Panels shorter than 1e-10 of the domain are not cut further.
     #[must_use]
@@ -268,7 +271,8 @@ impl Panels {
         [before, after].map(|n| n.map(|n| &self.panels[n]).filter(|n| n.piece == piece))
     }
 
-    /// Whether an end of the panel is a joint of two pieces; on a loop of several pieces the seam is one.
+    /// Whether an end of the panel is a joint of two pieces; on a loop of several pieces the seam
+    /// is one.
     fn touches_joint(&self, index: usize) -> bool {
         let last = self.panels.len() - 1;
         let differs = |other: usize| self.panels[other].piece != self.panels[index].piece;

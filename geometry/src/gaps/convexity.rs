@@ -41,8 +41,7 @@ pub(super) fn is_convex(curve: &dyn GeneratingCurve, parameters: &[f64]) -> bool
         let tangent = curve.tangent(s);
         let step = turn(last, tangent);
         let allowed = if k == 0 { POLE } else { CORNER };
-        // A tangent that is not a number fails here.
-        if !(step.abs() <= allowed) {
+        if step.is_nan() || step.abs() > allowed {
             return false;
         }
         turned += step;

@@ -6,12 +6,14 @@ use super::rigid::{RigidMotion, Wrench};
 
 /// Where a body is: its centre, its orientation and its scale, in the laboratory.
 ///
-/// In its own frame a body has its centre at the origin and its symmetry axis along $z$. The frame takes a point $x$ of
-/// the body to $c + L\, q x q^*$ in the laboratory, with the centre $c$, the unit quaternion $q$ and the scale $L$.
+/// In its own frame a body has its centre at the origin and its symmetry axis along $z$. The frame
+/// takes a point $x$ of the body to $c + L\, q x q^*$ in the laboratory, with the centre $c$, the
+/// unit quaternion $q$ and the scale $L$.
 ///
-/// A body of scale $L$ is its shape made $L$ times as large. Its equations, written in its own frame, are those of the
-/// shape: velocities and densities of double layers are the same numbers in both frames but for the rotation; angular
-/// velocities and velocity gradients are $L$ times as large in the body's frame, forces $1/L$ and torques $1/L^2$ times.
+/// A body of scale $L$ is its shape made $L$ times as large. Its equations, written in its own
+/// frame, are those of the shape: velocities and densities of double layers are the same numbers in
+/// both frames but for the rotation; angular velocities and velocity gradients are $L$ times as
+/// large in the body's frame, forces $1/L$ and torques $1/L^2$ times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     center: Point3<f64>,
@@ -22,7 +24,8 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The frame with origin `center` whose axes are those of the laboratory turned by `orientation`, of scale 1.
+    /// The frame with origin `center` whose axes are those of the laboratory turned by
+    /// `orientation`, of scale 1.
     pub fn new(center: Point3<f64>, orientation: UnitQuaternion<f64>) -> Self {
         Self {
             center,
@@ -37,8 +40,9 @@ impl Frame {
         Self::new(center, UnitQuaternion::identity())
     }
 
-    /// The frame with origin `center` whose `z` axis is `axis`, turned from the laboratory by the smallest rotation that
-    /// does it: about $e_z \times$ `axis`, or about $e_x$ if `axis` is $-e_z$. Of scale 1.
+    /// The frame with origin `center` whose `z` axis is `axis`, turned from the laboratory by the
+    /// smallest rotation that does it: about $e_z \times$ `axis`, or about $e_x$ if `axis` is
+    /// $-e_z$. Of scale 1.
     pub fn along(center: Point3<f64>, axis: Unit<Vector3<f64>>) -> Self {
         Self::new(center, smallest_rotation_to(axis))
     }
@@ -49,12 +53,14 @@ impl Frame {
         Self { scale, ..self }
     }
 
-    /// The frame of a body that has moved: its centre by `displacement`, and turned about its centre by the angle
-    /// $\lvert\theta\rvert$ (radians) about the direction of the `rotation` vector $\theta$, both in the laboratory.
+    /// The frame of a body that has moved: its centre by `displacement`, and turned about its
+    /// centre by the angle $\lvert\theta\rvert$ (radians) about the direction of the `rotation`
+    /// vector $\theta$, both in the laboratory.
     #[must_use]
     pub fn moved(&self, displacement: Vector3<f64>, rotation: Vector3<f64>) -> Self {
         let mut turned = UnitQuaternion::from_scaled_axis(rotation) * self.orientation;
-        // A product of unit quaternions is one but for rounding, which would add up over many steps.
+        // A product of unit quaternions is one but for rounding, which would add up over many
+        // steps.
         turned.renormalize();
         Self::new(self.center + displacement, turned).scaled(self.scale)
     }
@@ -192,7 +198,8 @@ mod tests {
         }
     }
 
-    /// No other rotation that takes the axis there turns by less: the angle is that between the axes.
+    /// No other rotation that takes the axis there turns by less: the angle is that between the
+    /// axes.
     #[test]
     fn an_axis_stands_for_the_smallest_rotation() {
         for axis in axes() {

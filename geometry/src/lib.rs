@@ -1,5 +1,5 @@
-//! Bodies of revolution: their generating curves, panels on them, where bodies are and how they move, and the gaps
-//! between them.
+//! Bodies of revolution: their generating curves, panels on them, where bodies are and how they
+//! move, and the gaps between them.
 //!
 //! ```
 //! use bodies_of_revolution::*;
@@ -7,7 +7,8 @@
 //!
 //! let rod = Spheroid::new(1.0, 0.5)?.shape();
 //! let across = Frame::along(Point3::new(0.0, 0.0, 2.0), Vector3::x_axis());
-//! let placed = [Frame::at(Point3::origin()), across].map(|frame| Placed { curve: &*rod, frame, reach: 1.0 });
+//! let upright = Frame::at(Point3::origin());
+//! let placed = [upright, across].map(|frame| Placed { curve: &*rod, frame, reach: 1.0 });
 //! let gap = gaps(&placed)?[0];
 //! assert!((gap.distance - 0.5).abs() < 1e-12);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -34,7 +35,7 @@ pub use curve::{
     Panels, Polar, Profile, Shape, Spheroid, Topology, Torus,
 };
 pub use frame::Frame;
-pub use gaps::{ContactError, Gap, Placed, Relation, TOUCHING, gaps};
+pub use gaps::{ContactError, Depth, Gap, Placed, Relation, TOUCHING, gaps};
 pub use inside::Insides;
 pub use neighbours::{Ball, Neighbours};
 pub use rigid::{RigidMotion, Wrench};

@@ -1,7 +1,8 @@
 //! Which of many balls are near a point or a ball: the index that all searches for neighbours use.
 //!
-//! Each body is known by a ball around it. The balls are kept in an R-tree by their bounding boxes, so that a search
-//! costs about the logarithm of the number of balls, however much their sizes differ.
+//! Each body is known by a ball around it. The balls are kept in an R-tree by their bounding boxes,
+//! so that a search costs about the logarithm of the number of balls, however much their sizes
+//! differ.
 
 use nalgebra::{Point3, Vector3};
 use rstar::primitives::{GeomWithData, Rectangle};

@@ -10,7 +10,8 @@ use super::{GeneratingCurve, Meridian, Topology};
 const COEFFICIENTS: [f64; 3] = [0.207161, 2.002558, -1.122762];
 
 /// The average red cell of Evans & Fung (Microvasc. Res. 4, 335, 1972): thickness
-/// `R sqrt(1 - x^2) (c_0 + c_2 x^2 + c_4 x^4)` at the distance `x R` from the axis, half of it on either side.
+/// `R sqrt(1 - x^2) (c_0 + c_2 x^2 + c_4 x^4)` at the distance `x R` from the axis, half of it on
+/// either side.
 ///
 /// With `x = sin s`, `0 <= s <= pi`, this is analytic: `r = R sin s`,
 /// `z = (R/2) cos s (c_0 + c_2 sin^2 s + c_4 sin^4 s)`.

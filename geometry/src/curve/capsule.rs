@@ -6,10 +6,12 @@ use super::error::{CurveError, aspect, length};
 use super::spheroid::arc_chord;
 use super::{GeneratingCurve, Meridian, Topology};
 
-/// A cylinder of radius `a` and length `l` between two hemispheres, parametrised by arc length over `a`.
+/// A cylinder of radius `a` and length `l` between two hemispheres, parametrised by arc length over
+/// `a`.
 ///
-/// The pieces are the upper cap `0 <= s <= pi/2`, the cylinder up to `pi/2 + l/a`, and the lower cap up to
-/// `pi + l/a`. Curvature jumps at the joints; a capsule of length zero is a sphere of one piece.
+/// The pieces are the upper cap `0 <= s <= pi/2`, the cylinder up to `pi/2 + l/a`, and the lower
+/// cap up to `pi + l/a`. Curvature jumps at the joints; a capsule of length zero is a sphere of one
+/// piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule {
     radius: f64,
@@ -20,8 +22,8 @@ impl Capsule {
     /// The capsule of the given `radius` and `length` of its cylinder.
     ///
     /// # Errors
-    /// If the radius is not a positive length, or the length is neither zero nor a positive length within a
-    /// factor 1e6 of the radius.
+    /// If the radius is not a positive length, or the length is neither zero nor a positive length
+    /// within a factor 1e6 of the radius.
     pub fn new(radius: f64, length: f64) -> Result<Self, CurveError> {
         let radius = self::length("radius", radius)?;
         if length != 0.0 {
@@ -49,7 +51,8 @@ impl Capsule {
         [FRAC_PI_2, FRAC_PI_2 + self.length / self.radius]
     }
 
-    /// The angle from the upper pole, as if the cylinder were left out; exact to rounding near the joints.
+    /// The angle from the upper pole, as if the cylinder were left out; exact to rounding near the
+    /// joints.
     fn angle(&self, s: f64) -> (f64, f64) {
         let [upper, lower] = self.joints();
         if s <= upper {

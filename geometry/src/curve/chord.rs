@@ -6,12 +6,13 @@ use super::{GeneratingCurve, Meridian, Topology};
 /// Longest step, as a fraction of the domain, for which the tangent is integrated.
 const LONGEST_STEP: f64 = 0.125;
 
-/// The chord `gamma(s + ds) - gamma(s)` as the integral of the tangent, by 16 Gauss-Legendre nodes on each
-/// part between two of the ascending `splits`, whose first and last are the ends of the domain.
+/// The chord `gamma(s + ds) - gamma(s)` as the integral of the tangent, by 16 Gauss-Legendre nodes
+/// on each part between two of the ascending `splits`, whose first and last are the ends of the
+/// domain.
 ///
-/// This keeps full relative precision however small `ds` is, provided that the tangent is a polynomial of
-/// degree 31 to rounding between two splits. Steps beyond an eighth of the domain are plain differences. On
-/// loops `s + ds` may pass the seam.
+/// This keeps full relative precision however small `ds` is, provided that the tangent is a
+/// polynomial of degree 31 to rounding between two splits. Steps beyond an eighth of the domain are
+/// plain differences. On loops `s + ds` may pass the seam.
 pub fn chord_by_quadrature(
     curve: &(impl GeneratingCurve + ?Sized),
     splits: &[f64],

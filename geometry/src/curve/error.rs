@@ -6,7 +6,8 @@ use thiserror::Error;
 pub const SHORTEST: f64 = 1e-100;
 /// Longest length a curve is built from; above it squares and cubes overflow.
 pub const LONGEST: f64 = 1e100;
-/// Largest ratio of two lengths of one curve; beyond it no tolerance can be met in double precision.
+/// Largest ratio of two lengths of one curve; beyond it no tolerance can be met in double
+/// precision.
 pub const LARGEST_ASPECT: f64 = 1e6;
 
 /// Why a curve, or panels on it, cannot be made; the message names the value and what was expected.
@@ -186,7 +187,8 @@ pub enum CurveError {
         /// The distance there.
         r: f64,
     },
-    /// A curve that meets the axis at an angle other than a right one, so that the body has a conical tip.
+    /// A curve that meets the axis at an angle other than a right one, so that the body has a
+    /// conical tip.
     #[error(
         "the curve must meet the axis at a right angle (a smooth pole), but does not at s = {s}"
     )]

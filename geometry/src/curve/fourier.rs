@@ -1,4 +1,5 @@
-//! Meridians that are trigonometric polynomials: `r = sum_m b_m sin(m s)`, `z = sum_m a_m cos(m s)`.
+//! Meridians that are trigonometric polynomials: `r = sum_m b_m sin(m s)`,
+//! `z = sum_m a_m cos(m s)`.
 
 use super::Meridian;
 use super::spheroid::arc_chord;

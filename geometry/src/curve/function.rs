@@ -11,7 +11,8 @@ type Map = Box<dyn Fn(f64) -> Meridian + Send + Sync>;
 
 /// Nodes on each interval of the interpolant.
 const ORDER: usize = 16;
-/// Legendre tail, over the curve's size, at which an interval of the interpolant is not cut further.
+/// Legendre tail, over the curve's size, at which an interval of the interpolant is not cut
+/// further.
 const INTERPOLATION: f64 = 1e-13;
 /// Legendre tail of a given tangent on the intervals over which it is integrated.
 const INTEGRATION: f64 = 1e-12;
@@ -48,12 +49,12 @@ struct Interval {
 }
 
 impl FunctionCurve {
-    /// The curve `point(s)` with the derivative `tangent(s)`; `domain` lists the ends of the smooth pieces,
-    /// ascending (two numbers for a smooth curve).
+    /// The curve `point(s)` with the derivative `tangent(s)`; `domain` lists the ends of the smooth
+    /// pieces, ascending (two numbers for a smooth curve).
     ///
     /// # Errors
-    /// If the curve does not bound a body, see [`super::check_simple`]; if `tangent` is not the derivative of
-    /// `point`; or if panels do not resolve it.
+    /// If the curve does not bound a body, see [`super::check_simple`]; if `tangent` is not the
+    /// derivative of `point`; or if panels do not resolve it.
     pub fn new(
         domain: &[f64],
         topology: Topology,
@@ -81,11 +82,13 @@ impl FunctionCurve {
         Ok(curve)
     }
 
-    /// The curve `point(s)`, replaced by its interpolant of degree 15 on intervals so short that the Legendre
-    /// tail is below 1e-13 of the size; points are as good, tangents to about 1e-11. `domain` as in [`Self::new`].
+    /// The curve `point(s)`, replaced by its interpolant of degree 15 on intervals so short that
+    /// the Legendre tail is below 1e-13 of the size; points are as good, tangents to about 1e-11.
+    /// `domain` as in [`Self::new`].
     ///
     /// # Errors
-    /// If the curve does not bound a body, see [`super::check_simple`], or is not smooth between breakpoints.
+    /// If the curve does not bound a body, see [`super::check_simple`], or is not smooth between
+    /// breakpoints.
     pub fn from_point(
         domain: &[f64],
         topology: Topology,

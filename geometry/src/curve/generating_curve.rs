@@ -24,7 +24,8 @@ impl Meridian {
     }
 }
 
-/// A generating curve that bodies share. Bodies with the same `Arc` share all that depends on the shape alone.
+/// A generating curve that bodies share. Bodies with the same `Arc` share all that depends on the
+/// shape alone.
 pub type Shape = Arc<dyn GeneratingCurve>;
 
 /// How a generating curve closes.
@@ -38,7 +39,8 @@ pub enum Topology {
 
 /// A generating curve `s -> (r(s), z(s))`, smooth on each piece between two breakpoints.
 pub trait GeneratingCurve: Debug + Send + Sync {
-    /// Ends of the smooth pieces in the parameter `s`, ascending; the first and the last are the curve's ends.
+    /// Ends of the smooth pieces in the parameter `s`, ascending; the first and the last are the
+    /// curve's ends.
     fn breakpoints(&self) -> Vec<f64>;
 
     /// How the curve closes.
@@ -50,7 +52,8 @@ pub trait GeneratingCurve: Debug + Send + Sync {
     /// The derivative `(dr/ds, dz/ds)`.
     fn tangent(&self, s: f64) -> Meridian;
 
-    /// The difference `gamma(s + ds) - gamma(s)`, to full *relative* precision however small `ds` is.
+    /// The difference `gamma(s + ds) - gamma(s)`, to full *relative* precision however small `ds`
+    /// is.
     fn chord(&self, s: f64, ds: f64) -> Meridian;
 
     /// The curve as a shape that bodies share.

@@ -12,12 +12,14 @@ const TURN: f64 = 0.05;
 /// Most corners; beyond them the polygon is no longer refined.
 const MOST_CORNERS: usize = 1_000_000;
 
-/// Distance from the surface, in units of the body's size, up to which a point is on it: rounding of its coordinates.
+/// Distance from the surface, in units of the body's size, up to which a point is on it: rounding
+/// of its coordinates.
 pub const ON_SURFACE: f64 = 1e-13;
 
 /// A curve with an adaptive polygon on it, to answer many questions about the body.
 ///
-/// `P` points to the curve: a reference, or a [`Shape`](super::Shape) for an outline that owns what it needs.
+/// `P` points to the curve: a reference, or a [`Shape`](super::Shape) for an outline that owns what
+/// it needs.
 #[derive(Clone, Debug)]
 pub struct Outline<P> {
     curve: P,
@@ -87,7 +89,8 @@ impl<P: Deref<Target: GeneratingCurve>> Outline<P> {
         &self.parameters
     }
 
-    /// Whether the point lies in the body, and not [on its surface](ON_SURFACE); a point at r < 0 stands for its mirror image.
+    /// Whether the point lies in the body, and not [on its surface](ON_SURFACE); a point at r < 0
+    /// stands for its mirror image.
     pub fn contains(&self, point: Meridian) -> bool {
         let point = Meridian {
             r: point.r.abs(),
@@ -109,7 +112,8 @@ impl<P: Deref<Target: GeneratingCurve>> Outline<P> {
 
     /// The distance from the point to the curve, and the parameter of the nearest curve point.
     ///
-    /// The distance is good to about 1e-10 of the curve's size or better. Not a number gives not a number.
+    /// The distance is good to about 1e-10 of the curve's size or better. Not a number gives not a
+    /// number.
     pub fn nearest(&self, point: Meridian) -> (f64, f64) {
         let point = Meridian {
             r: point.r.abs(),
@@ -150,7 +154,8 @@ impl<P: Deref<Target: GeneratingCurve>> Outline<P> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Crossings of a ray away from the axis; the axis itself is never crossed, so open curves need no closing.
+    /// Crossings of a ray away from the axis; the axis itself is never crossed, so open curves need
+    /// no closing.
     fn polygon_contains(&self, p: Meridian) -> bool {
         let crossings = self.corners.windows(2).filter(|c| {
             let (a, b) = (c[0], c[1]);
@@ -159,7 +164,8 @@ impl<P: Deref<Target: GeneratingCurve>> Outline<P> {
         crossings.count() % 2 == 1
     }
 
-    /// The nearest point of a short arc: the zero of `(gamma - p) . gamma'` by safeguarded false position.
+    /// The nearest point of a short arc: the zero of `(gamma - p) . gamma'` by safeguarded false
+    /// position.
     fn nearest_between(&self, point: Meridian, start: f64, end: f64) -> (f64, f64) {
         let offset = |s: f64| {
             let (p, t) = (self.curve.point(s), self.curve.tangent(s));

@@ -1,54 +1,13 @@
-//! Panels: the intervals of the parameter that quadrature works on.
+//! The panels that cover a curve: even ones, bisected ones, graded ones.
 
+use super::arc_length::arc_length;
 use super::error::CurveError;
-use super::{GeneratingCurve, Topology, arc_length};
+use super::generating_curve::{GeneratingCurve, Topology};
+use super::panel::Panel;
+use super::shares::shares;
 
 /// Most panels that one curve may have.
 pub const MOST_PANELS: usize = 100_000;
-
-/// An interval of a curve's parameter, within one smooth piece.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Panel {
-    /// Parameter of its first end.
-    pub start: f64,
-    /// Parameter of its last end, larger than `start`.
-    pub end: f64,
-    /// The smooth piece it belongs to, from 0.
-    pub piece: usize,
-}
-
-impl Panel {
-    /// Its length in the parameter.
-    pub fn length(&self) -> f64 {
-        self.end - self.start
-    }
-
-    /// The parameter at `t` of the reference interval [-1, 1].
-    pub fn at(&self, t: f64) -> f64 {
-        // From the nearer end, so that t = -1 and t = 1 give the ends themselves.
-        let half = 0.5 * self.length();
-        if t < 0.0 {
-            self.start + half * (1.0 + t)
-        } else {
-            self.end - half * (1.0 - t)
-        }
-    }
-
-    /// Its two halves.
-    fn halves(&self) -> [Self; 2] {
-        let middle = self.start + 0.5 * self.length();
-        [
-            Self {
-                end: middle,
-                ..*self
-            },
-            Self {
-                start: middle,
-                ..*self
-            },
-        ]
-    }
-}
 
 /// Panels that cover a curve, in order, none across a breakpoint.
 #[derive(Clone, Debug, PartialEq)]
@@ -94,8 +53,8 @@ impl Panels {
         })
     }
 
-    /// `count` panels, equal in the parameter within each smooth piece; pieces get panels such that the longest
-    /// panel (by arc length) is as short as possible, and at least one.
+    /// `count` panels, equal in the parameter within each smooth piece; pieces get panels such that
+    /// the longest panel (by arc length) is as short as possible, and at least one.
     ///
     /// # Errors
     /// If `count` is less than the number of pieces, or more than [`MOST_PANELS`].
@@ -108,8 +67,9 @@ impl Panels {
         })
     }
 
-    /// `count` panels of equal arc length within each smooth piece, shared among the pieces like [uniform](Self::uniform)
-    /// ones: where the parameter runs faster here than there, these resolve more with as many.
+    /// `count` panels of equal arc length within each smooth piece, shared among the pieces like
+    /// [uniform](Self::uniform) ones: where the parameter runs faster here than there, these
+    /// resolve more with as many.
     ///
     /// # Errors
     /// If `count` is less than the number of pieces, or more than [`MOST_PANELS`].
@@ -193,8 +153,8 @@ impl Panels {
         }
     }
 
-    /// The same panels, bisected until none is more than twice as long (in the parameter) as a neighbour on
-    /// the same smooth piece; a loop of one piece is smooth across its seam too.
+    /// The same panels, bisected until none is more than twice as long (in the parameter) as a
+    /// neighbour on the same smooth piece; a loop of one piece is smooth across its seam too.
     #[must_use]
     pub fn graded(&self) -> Self {
         // A little more than 2, so that roundings of the ends do not count.
@@ -218,8 +178,9 @@ impl Panels {
         }
     }
 
-    /// The same panels, [graded](Self::graded), and at a joint of two smooth pieces bisected until neither side's arc is more than
-    /// twice as long as the other's: a density that varies over the one cannot be smooth over much more of the other.
+    /// The same panels, [graded](Self::graded), and bisected at each joint of two smooth pieces
+    /// until neither arc beside the joint is more than twice as long as the other: a density that
+    /// varies over a short arc varies as fast just beyond the joint.
     #[must_use]
     pub fn graded_across_joints(&self, curve: &(impl GeneratingCurve + ?Sized)) -> Self {
         let mut result = self.graded();
@@ -246,8 +207,9 @@ impl Panels {
         }
     }
 
-    /// The same panels, those at a joint of two smooth pieces bisected towards it `levels` times: there the
-    /// density is not smooth (a capsule's curvature jumps). Each round halves the panels at the joints.
+    /// The same panels, those at a joint of two smooth pieces bisected towards it `levels` times:
+    /// there the density is not smooth (a capsule's curvature jumps). Each round halves the panels
+    /// at the joints.
     ///
     /// Panels shorter than 1e-10 of the domain are not cut further.
     #[must_use]
@@ -309,7 +271,8 @@ impl Panels {
         [before, after].map(|n| n.map(|n| &self.panels[n]).filter(|n| n.piece == piece))
     }
 
-    /// Whether an end of the panel is a joint of two pieces; on a loop of several pieces the seam is one.
+    /// Whether an end of the panel is a joint of two pieces; on a loop of several pieces the seam
+    /// is one.
     fn touches_joint(&self, index: usize) -> bool {
         let last = self.panels.len() - 1;
         let differs = |other: usize| self.panels[other].piece != self.panels[index].piece;
@@ -335,53 +298,6 @@ impl<'a> IntoIterator for &'a Panels {
     fn into_iter(self) -> Self::IntoIter {
         self.iter()
     }
-}
-
-/// Shares `count` panels among pieces: one each, then always one more to the piece whose panels are longest.
-fn shares(lengths: &[f64], count: usize) -> Vec<usize> {
-    // Start just below the ideal shares, so that few panels remain to be handed out one by one.
-    let total: f64 = lengths.iter().sum();
-    let spare = count - lengths.len();
-    let ideal = |length: f64| {
-        if total > 0.0 {
-            (length / total * spare as f64) as usize
-        } else {
-            0
-        }
-    };
-    let mut shares: Vec<usize> = lengths.iter().map(|&l| 1 + ideal(l).min(spare)).collect();
-    while shares.iter().sum::<usize>() > count {
-        let Some(largest) = shares.iter_mut().max() else {
-            break;
-        };
-        *largest -= 1;
-    }
-    let mut left = count - shares.iter().sum::<usize>().min(count);
-    let mut open = vec![true; lengths.len()];
-    while left > 0 {
-        let size = |p: usize| lengths[p] / shares[p] as f64;
-        let longest = (0..lengths.len())
-            .filter(|&p| open[p])
-            .map(size)
-            .fold(0.0, f64::max);
-        let equals: Vec<usize> = (0..lengths.len())
-            .filter(|&p| open[p] && size(p) >= longest * (1.0 - 1e-9))
-            .collect();
-        // Pieces of one length get one more panel each or none, so that symmetric curves stay symmetric.
-        if equals.is_empty() {
-            shares[0] += left;
-            left = 0;
-        } else if equals.len() <= left {
-            equals.iter().for_each(|&p| shares[p] += 1);
-            left -= equals.len();
-        } else if equals.len() < open.iter().filter(|&&o| o).count() {
-            equals.iter().for_each(|&p| open[p] = false);
-        } else {
-            equals[..left].iter().for_each(|&p| shares[p] += 1);
-            left = 0;
-        }
-    }
-    shares
 }
 
 #[cfg(test)]

@@ -9,8 +9,8 @@ use super::{GeneratingCurve, Meridian, Topology};
 /// Most coefficients accepted.
 const MOST_COEFFICIENTS: usize = 1000;
 
-/// The body whose surface is at the distance `d(theta) = sum_k c_k cos(k theta)` from the centre, theta
-/// from the axis: `r = d sin theta`, `z = d cos theta`, `0 <= theta <= pi`.
+/// The body whose surface is at the distance `d(theta) = sum_k c_k cos(k theta)` from the centre,
+/// theta from the axis: `r = d sin theta`, `z = d cos theta`, `0 <= theta <= pi`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polar {
     coefficients: Vec<f64>,
@@ -21,8 +21,8 @@ impl Polar {
     /// The body of the given coefficients `c_0, c_1, ...`
     ///
     /// # Errors
-    /// If there is none or more than 1000, if one is not finite, or if the distance is anywhere less than
-    /// 1e-6 of `sum |c_k|` (in particular zero or negative).
+    /// If there is none or more than 1000, if one is not finite, or if the distance is anywhere
+    /// less than 1e-6 of `sum |c_k|` (in particular zero or negative).
     pub fn new(coefficients: &[f64]) -> Result<Self, CurveError> {
         if coefficients.is_empty() {
             return Err(CurveError::NoCoefficients);
@@ -64,7 +64,8 @@ fn distance(coefficients: &[f64], theta: f64) -> f64 {
         .sum()
 }
 
-/// `2 cos(k t) sin t = sin((k+1) t) - sin((k-1) t)`, `2 cos(k t) cos t = cos((k+1) t) + cos((k-1) t)`.
+/// `2 cos(k t) sin t = sin((k+1) t) - sin((k-1) t)`,
+/// `2 cos(k t) cos t = cos((k+1) t) + cos((k-1) t)`.
 fn series(coefficients: &[f64]) -> Fourier {
     let mut sines = vec![0.0; coefficients.len() + 1];
     let mut cosines = sines.clone();
@@ -78,7 +79,8 @@ fn series(coefficients: &[f64]) -> Fourier {
     Fourier { sines, cosines }
 }
 
-/// Proves that the distance exceeds 1e-6 of its bound, with `|d''| <= sum k^2 |c_k|` between samples.
+/// Proves that the distance exceeds 1e-6 of its bound, with `|d''| <= sum k^2 |c_k|` between
+/// samples.
 fn check_positive(coefficients: &[f64]) -> Result<(), CurveError> {
     let bound: f64 = coefficients.iter().map(|c| c.abs()).sum();
     let bend: f64 = coefficients

@@ -37,11 +37,11 @@ impl Rectangle {
     }
 }
 
-/// A place where the polygon through `points` meets itself other than where two successive sides join, or
-/// turns straight back; `closed` says that the last point repeats the first.
+/// A place where the polygon through `points` meets itself other than where two successive sides
+/// join, or turns straight back; `closed` says that the last point repeats the first.
 ///
-/// Pairs of sides are searched through a binary tree of rectangles along the polygon: about N log N steps
-/// for N points of a reasonable curve.
+/// Pairs of sides are searched through a binary tree of rectangles along the polygon: about N log N
+/// steps for N points of a reasonable curve.
 pub(super) fn first_crossing(points: &[Meridian], closed: bool) -> Option<Meridian> {
     let sides = points.len().saturating_sub(1);
     if sides < 2 {

@@ -13,15 +13,16 @@ pub const MOST_POINTS: usize = 100_000;
 const FEWEST: (usize, usize) = (5, 7);
 /// Largest ratio of two neighbouring steps.
 const UNEVEN: f64 = 100.0;
-/// Corrections of the knots from chord length to arc length; each gains two orders, and the first is enough
-/// for order six.
+/// Corrections of the knots from chord length to arc length; each gains two orders, and the first
+/// is enough for order six.
 const CORRECTIONS: usize = 2;
 
 /// The quintic spline through points of the meridian, with four continuous derivatives.
 ///
-/// Its error is O(h^6) in the spacing h of the points, also where they are unevenly spaced: the knots are the
-/// arc lengths of the spline itself (chord lengths alone would give O(h^4)). At the poles r is odd and z even
-/// in the arc length; loops are periodic. The whole curve counts as one smooth piece.
+/// Its error is O(h^6) in the spacing h of the points, also where they are unevenly spaced: the
+/// knots are the arc lengths of the spline itself (chord lengths alone would give O(h^4)). At the
+/// poles r is odd and z even in the arc length; loops are periodic. The whole curve counts as one
+/// smooth piece.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
     knots: Vec<f64>,
@@ -31,12 +32,13 @@ pub struct Profile {
 }
 
 impl Profile {
-    /// The profile through `points`, either from pole to pole (first and last on the axis: `r = 0` to 1e-9 of
-    /// the size) or a closed loop off the axis, whose last point repeats the first. Either direction will do.
+    /// The profile through `points`, either from pole to pole (first and last on the axis: `r = 0`
+    /// to 1e-9 of the size) or a closed loop off the axis, whose last point repeats the first.
+    /// Either direction will do.
     ///
     /// # Errors
-    /// If there are too few or more than 100 000 points, or they are not finite, off the half plane, repeated,
-    /// or very unevenly spaced; if the profile is open, or meets itself.
+    /// If there are too few or more than 100 000 points, or they are not finite, off the half
+    /// plane, repeated, or very unevenly spaced; if the profile is open, or meets itself.
     pub fn from_points(points: &[Meridian]) -> Result<Self, CurveError> {
         let (points, topology) = checked(points)?;
         let mut knots = vec![0.0; points.len()];

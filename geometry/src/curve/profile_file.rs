@@ -44,12 +44,13 @@ impl Profile {
         Self::from_reader(BufReader::new(file), &name)
     }
 
-    /// The profile through the points that `reader` gives, one `r,z` on each line; empty lines, what follows a
-    /// `#`, and one header line before the first point are skipped. `name` is for messages.
+    /// The profile through the points that `reader` gives, one `r,z` on each line; empty lines,
+    /// what follows a `#`, and one header line before the first point are skipped. `name` is for
+    /// messages.
     ///
     /// # Errors
-    /// If reading fails, more than 16 MiB come, a line holds anything else, or the points are no profile: see
-    /// [`Profile::from_points`].
+    /// If reading fails, more than 16 MiB come, a line holds anything else, or the points are no
+    /// profile: see [`Profile::from_points`].
     pub fn from_reader(reader: impl BufRead, name: &str) -> Result<Self, CurveError> {
         Self::from_points(&points(reader, name)?)
     }

@@ -1,8 +1,8 @@
 //! Quintic splines through points: C^4, with mirror symmetry at poles or periodic.
 //!
-//! The unknowns are the first and second derivatives v_i, a_i at the knots; continuity of the third and fourth
-//! derivatives gives a block tridiagonal system of 2 x 2 blocks (Späth, One Dimensional Spline Interpolation
-//! Algorithms, 1995, chapter 7), solved in O(N).
+//! The unknowns are the first and second derivatives v_i, a_i at the knots; continuity of the third
+//! and fourth derivatives gives a block tridiagonal system of 2 x 2 blocks (Späth, One Dimensional
+//! Spline Interpolation Algorithms, 1995, chapter 7), solved in O(N).
 
 use super::{Meridian, Topology};
 
@@ -22,8 +22,9 @@ struct Row {
     right: Columns,
 }
 
-/// The segments of the spline through `points` at the ascending `knots`; in a loop the last point repeats the
-/// first. Nothing is said about finiteness: collinear knots give infinities, not panics.
+/// The segments of the spline through `points` at the ascending `knots`; in a loop the last point
+/// repeats the first. Nothing is said about finiteness: collinear knots give infinities, not
+/// panics.
 pub(super) fn spline(knots: &[f64], points: &[Meridian], topology: Topology) -> Vec<Segment> {
     let steps: Vec<f64> = knots.windows(2).map(|k| k[1] - k[0]).collect();
     // In units of the mean step, so that the blocks are well scaled.

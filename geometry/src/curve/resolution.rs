@@ -14,15 +14,18 @@ const FIRST_PANELS: usize = 4;
 const SHORTEST_PANEL: f64 = 1e-10;
 
 impl Panels {
-    /// Panels on which `order` Gauss-Legendre nodes represent the curve to `tolerance`: each is bisected until
-    /// the last two Legendre coefficients of r and z (in relation to the body's size), of the speed (to the
-    /// panel's largest) and of the unit normal are below it; then graded, see [`Panels::graded`].
+    /// Panels on which `order` Gauss-Legendre nodes represent the curve to `tolerance`: each is
+    /// bisected until the last two Legendre coefficients of r and z (in relation to the body's
+    /// size), of the speed (to the panel's largest) and of the unit normal are below it; then
+    /// graded, see [`Panels::graded`].
     ///
-    /// This resolves the geometry; a density on it may need more. Cost: some `order` points per panel.
+    /// This resolves the geometry; a density on it may need more. Cost: some `order` points per
+    /// panel.
     ///
     /// # Errors
-    /// If `order` is not in 4..=64 or `tolerance` not in 1e-14..=0.1, or if the curve is not smooth enough: a
-    /// panel would be shorter than 1e-10 of the domain, or more than [`MOST_PANELS`] be needed.
+    /// If `order` is not in 4..=64 or `tolerance` not in 1e-14..=0.1, or if the curve is not smooth
+    /// enough: a panel would be shorter than 1e-10 of the domain, or more than [`MOST_PANELS`] be
+    /// needed.
     pub fn resolving(
         curve: &(impl GeneratingCurve + ?Sized),
         order: usize,
@@ -128,7 +131,8 @@ fn tail(
     }
     let fastest = speed.iter().copied().fold(0.0, f64::max);
     speed.iter_mut().for_each(|v| *v /= fastest);
-    // What rounding alone leaves in the last coefficients is no sign of anything missed; it shows in a ring much thinner than wide.
+    // Rounding alone leaves something in the last coefficients, and that is not part of the curve
+    // that is missed. It is large enough to matter in a ring much thinner than wide.
     let missed = |f: &Vec<f64>| {
         let largest = f.iter().fold(0.0f64, |most, x| most.max(x.abs()));
         (transform.tail(f) - 64.0 * f64::EPSILON * largest).max(0.0)

@@ -84,8 +84,8 @@ impl GeneratingCurve for Spheroid {
 /// The chord of the unit circle `(sin s, cos s)`: `sin(s + ds) - sin s = 2 cos m sin(ds/2)` and
 /// `cos(s + ds) - cos s = -2 sin m sin(ds/2)`, with `m = s + ds/2`.
 ///
-/// The sum m is never rounded: its sine and cosine come from the addition theorem, so that the error is a
-/// few roundings of the component's own terms also where sin m or cos m is small.
+/// The sum m is never rounded: its sine and cosine come from the addition theorem, so that the
+/// error is a few roundings of the component's own terms also where sin m or cos m is small.
 pub(super) fn arc_chord(s: f64, ds: f64) -> Meridian {
     let (sin, cos) = s.sin_cos();
     let (sin_half, cos_half) = (0.5 * ds).sin_cos();

@@ -17,8 +17,8 @@ impl Torus {
     /// The torus whose tube of radius `minor` (a) is centred on the circle of radius `major` (R).
     ///
     /// # Errors
-    /// If a radius is not a positive length, if `minor >= major`, or if the tube or the hole is more than
-    /// 1e6 times smaller than `major`.
+    /// If a radius is not a positive length, if `minor >= major`, or if the tube or the hole is
+    /// more than 1e6 times smaller than `major`.
     pub fn new(major: f64, minor: f64) -> Result<Self, CurveError> {
         let major = length("major", major)?;
         let minor = length("minor", minor)?;

@@ -10,8 +10,8 @@ pub(super) const CLOSURE: f64 = 1e-9;
 /// Largest slope of the curve against the plane normal to the axis at a pole.
 const POLE_SLOPE: f64 = 1e-6;
 
-/// Checks that the curve bounds a body: finite and regular, ends on the axis at right angles or closed off the
-/// axis, `r > 0` between, not meeting itself, and traversed with the normal outward.
+/// Checks that the curve bounds a body: finite and regular, ends on the axis at right angles or
+/// closed off the axis, `r > 0` between, not meeting itself, and traversed with the normal outward.
 ///
 /// The check is made on a polygon within 1e-6 of the curve's size; finer contact escapes it.
 ///

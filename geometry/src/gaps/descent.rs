@@ -4,9 +4,10 @@ use nalgebra::{Matrix2, Point3, Vector2, Vector3};
 
 use super::meridian::{Foot, Located};
 
-/// Most steps.
-const STEPS: usize = 100;
-/// Angle between the normals at which points are nearest; the distance is off by its square times a radius of curvature.
+/// Steps that are enough where the distance is smooth.
+pub(super) const STEPS: usize = 100;
+/// Angle between the normals, in radians, at which the search ends. The error of the distance is
+/// the square of the angle times a radius of curvature.
 const PARALLEL: f64 = 1e-10;
 /// Step of the differences, over the size of the smaller body.
 const DIFFERENCE: f64 = 1e-8;
@@ -19,7 +20,7 @@ pub(super) struct Pair {
 }
 
 impl Pair {
-    fn at(first: &Located<'_>, second: &Located<'_>, x: Point3<f64>) -> Self {
+    pub(super) fn at(first: &Located<'_>, second: &Located<'_>, x: Point3<f64>) -> Self {
         let on_first = first.foot(x);
         Self {
             on_first,
@@ -32,20 +33,42 @@ impl Pair {
         self.on_second.distance
     }
 
+    /// Whether the outward normals point the same way, and not against each other.
+    pub(super) fn same_side(&self) -> bool {
+        self.on_first.normal.dot(&self.on_second.normal) > 0.0
+    }
+
+    /// The same points where the bodies have changed their roles.
+    pub(super) fn reversed(self) -> Self {
+        Self {
+            on_first: self.on_second,
+            on_second: self.on_first,
+        }
+    }
+
     /// Zero if the normals are opposite.
     fn mismatch(&self) -> Vector3<f64> {
         self.on_first.normal + self.on_second.normal
     }
 }
 
-/// Minimises the signed distance from the second body over the first surface, by a Newton method in tangent planes: there
-/// is no pole where coordinates fail, and nothing is special about contact.
+/// Minimises the signed distance from the second body over the first surface, in at most `steps`
+/// steps of a Newton method.
 ///
-/// The second derivative is the sum of both curvatures, which is how the sum of the outward normals changes.
-pub(super) fn descend(first: &Located<'_>, second: &Located<'_>, start: Point3<f64>) -> Pair {
+/// The method works in tangent planes, because coordinates on the surface fail at the poles. The
+/// signed distance is smooth where the bodies touch, so that contact needs no case of its own.
+///
+/// The second derivative is the sum of both curvatures. It is found from the change of the sum of
+/// the outward normals along the surface.
+pub(super) fn descend(
+    first: &Located<'_>,
+    second: &Located<'_>,
+    start: Point3<f64>,
+    steps: usize,
+) -> Pair {
     let size = first.radius();
     let mut here = Pair::at(first, second, start);
-    for _ in 0..STEPS {
+    for _ in 0..steps {
         let normal = here.on_first.normal;
         let least = normal.iamin();
         let mut axis = Vector3::zeros();

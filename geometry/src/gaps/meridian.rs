@@ -1,7 +1,9 @@
-//! Distances from one meridian, fast enough for many points, and from the body where it lies in the laboratory.
+//! Distances from one meridian, fast enough for many points, and from the body where it lies in the
+//! laboratory.
 
 use nalgebra::{Point3, Vector3};
 
+use super::convexity::is_convex;
 use crate::curve::{CurveError, GeneratingCurve, Meridian, Outline, off_segment};
 use crate::frame::Frame;
 
@@ -23,6 +25,8 @@ pub(super) struct Shape<'a> {
     middle: f64,
     radius: f64,
     slack: f64,
+    /// Whether the body is convex, and smooth.
+    convex: bool,
 }
 
 impl<'a> Shape<'a> {
@@ -61,6 +65,7 @@ impl<'a> Shape<'a> {
             middle,
             radius: radius + slack,
             slack,
+            convex: is_convex(curve, outline.parameters()),
         })
     }
 
@@ -108,7 +113,8 @@ impl<'a> Shape<'a> {
     fn coarse(&self, p: Meridian) -> f64 {
         let (segment, square) = self.nearest_segment(p);
         let (a, b) = (self.corners[segment], self.corners[segment + 1]);
-        // The polygon turns so little that the nearest segment tells the side, even if an end of it is nearest.
+        // The polygon turns so little that the nearest segment tells the side, even if an end of it
+        // is nearest.
         let outward = -(p.r - a.r) * (b.z - a.z) + (p.z - a.z) * (b.r - a.r);
         square.sqrt().copysign(outward)
     }
@@ -134,7 +140,8 @@ impl<'a> Shape<'a> {
         best.0
     }
 
-    /// The nearest point of a short arc, and its distance: zero of `(gamma - p) . gamma'` by false position (Illinois rule).
+    /// The nearest point of a short arc, and its distance: zero of `(gamma - p) . gamma'` by false
+    /// position (Illinois rule).
     fn foot_between(&self, p: Meridian, segment: usize) -> (f64, f64) {
         let offset = |s: f64| {
             let (x, t) = (self.curve.point(s), self.curve.tangent(s));
@@ -229,12 +236,45 @@ impl Located<'_> {
         (self.frame.point_to_lab(Point3::new(r * cos, r * sin, z)), r)
     }
 
+    /// Whether the body is convex, and smooth.
+    pub(super) fn is_convex(&self) -> bool {
+        self.shape.convex
+    }
+
+    /// The corner of the polygon that is farthest in a direction, turned about the axis towards it;
+    /// for convex bodies.
+    pub(super) fn farthest(&self, direction: Vector3<f64>) -> Point3<f64> {
+        let along = self.frame.vector_to_body(direction);
+        let across = along.x.hypot(along.y);
+        let corners = &self.shape.corners;
+        // The polygon turns one way: it first goes along the direction, and then against it.
+        let (mut rising, mut falling) = (0, corners.len() - 1);
+        while rising < falling {
+            let k = (rising + falling) / 2;
+            let (a, b) = (corners[k], corners[k + 1]);
+            if (b.r - a.r) * across + (b.z - a.z) * along.z > 0.0 {
+                rising = k + 1;
+            } else {
+                falling = k;
+            }
+        }
+        let corner = corners[rising];
+        let (cos, sin) = if across > 0.0 {
+            (along.x / across, along.y / across)
+        } else {
+            (1.0, 0.0)
+        };
+        let point = Point3::new(corner.r * cos, corner.r * sin, corner.z);
+        self.frame.point_to_lab(point * self.scale)
+    }
+
     fn to_meridian(self, x: Point3<f64>) -> (Point3<f64>, Meridian) {
         let p = self.frame.point_to_body(x) / self.scale;
         (p, Meridian::of(&p))
     }
 
-    /// The distance from the polygon, negative inside; within [`Self::slack`] of the distance from the surface.
+    /// The distance from the polygon, negative inside; within [`Self::slack`] of the distance from
+    /// the surface.
     pub(super) fn coarse(&self, x: Point3<f64>) -> f64 {
         self.scale * self.shape.coarse(self.to_meridian(x).1)
     }

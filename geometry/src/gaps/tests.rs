@@ -1,9 +1,16 @@
-use nalgebra::{Unit, Vector3};
+use std::f64::consts::PI;
+
+use nalgebra::{Point3, Unit, Vector3};
 
 use super::*;
-use crate::curve::{Biconcave, Capsule, Spheroid, Torus};
+use crate::curve::{Biconcave, Capsule, GeneratingCurve, Spheroid, Torus};
+use crate::frame::Frame;
 
-fn at<'a>(curve: &'a dyn GeneratingCurve, center: [f64; 3], axis: [f64; 3]) -> Placed<'a> {
+pub(super) fn at<'a>(
+    curve: &'a dyn GeneratingCurve,
+    center: [f64; 3],
+    axis: [f64; 3],
+) -> Placed<'a> {
     Placed {
         curve,
         frame: Frame::along(center.into(), Unit::new_normalize(axis.into())),
@@ -11,17 +18,17 @@ fn at<'a>(curve: &'a dyn GeneratingCurve, center: [f64; 3], axis: [f64; 3]) -> P
     }
 }
 
-fn scaled<'a>(scale: f64, placed: Placed<'a>) -> Placed<'a> {
+pub(super) fn scaled<'a>(scale: f64, placed: Placed<'a>) -> Placed<'a> {
     Placed {
         frame: placed.frame.scaled(scale),
         ..placed
     }
 }
 
-const Z: [f64; 3] = [0.0, 0.0, 1.0];
+pub(super) const Z: [f64; 3] = [0.0, 0.0, 1.0];
 
 /// The gap of two bodies; it must be the same the other way round, and its points so far apart.
-fn gap_of(a: Placed<'_>, b: Placed<'_>) -> Gap {
+pub(super) fn gap_of(a: Placed<'_>, b: Placed<'_>) -> Gap {
     let found = gaps(&[a, b]).unwrap();
     assert_eq!(found.len(), 1);
     let back = gaps(&[b, a]).unwrap()[0];
@@ -32,6 +39,10 @@ fn gap_of(a: Placed<'_>, b: Placed<'_>) -> Gap {
     );
     let apart = (found[0].points[0] - found[0].points[1]).norm();
     assert!((apart - found[0].distance.abs()).abs() < 5e-14);
+    assert_eq!(
+        found[0].depth.is_some(),
+        found[0].check(0.0).is_err() && found[0].relation != Relation::Touching
+    );
     found[0]
 }
 
@@ -41,7 +52,7 @@ fn distance_of(a: Placed<'_>, b: Placed<'_>) -> f64 {
     gap.distance
 }
 
-fn direction(chance: &mut fastrand::Rng) -> [f64; 3] {
+pub(super) fn direction(chance: &mut fastrand::Rng) -> [f64; 3] {
     loop {
         let x = Vector3::from_fn(|_, _| 2.0 * chance.f64() - 1.0);
         if x.norm() > 0.1 && x.norm() < 1.0 {
@@ -151,7 +162,8 @@ fn spheroids_whose_gap_is_known() {
     }
 }
 
-/// Distance of two ellipsoids by a grid on each and shrinking steps from the best pairs: nothing of it is used in the module.
+/// Distance of two ellipsoids by a grid on each and shrinking steps from the best pairs, a method
+/// that shares nothing with the module.
 fn by_search(a: [f64; 2], to_lab_a: &Frame, b: [f64; 2], to_lab_b: &Frame) -> f64 {
     let point = |[polar, equatorial]: [f64; 2], frame: &Frame, s: f64, phi: f64| {
         frame.point_to_lab(Point3::new(
@@ -241,7 +253,8 @@ fn spheroids_of_chance_agree_with_a_search() {
     assert!((10..=28).contains(&apart), "{apart}");
 }
 
-/// A rim or tip of small radius: the search knows the gap from above, and from below what a disc or needle of no thickness would have.
+/// A rim of small radius. The gap is at most that of a disc of no thickness, and it is smaller by
+/// no more than the thickness.
 #[test]
 fn rims_of_thin_discs() {
     let mut chance = fastrand::Rng::with_seed(12);
@@ -310,7 +323,8 @@ fn tori_around_things() {
         gap_of(around, at(&rod, [1.3, 0.0, 0.0], Z)).relation,
         Relation::Overlapping
     );
-    // Rings of radius 2 through each other are 2 apart all around; off by a half, 1.5 in two places.
+    // The circles of two linked rings of radius 2 are 2 apart all around. With one ring moved by a
+    // half they are 1.5 apart, in two places.
     let thin = Torus::new(2.0, 0.3).unwrap();
     let ring = at(&thin, [0.0; 3], Z);
     let links = distance_of(ring, at(&thin, [2.0, 0.0, 0.0], [0.0, 1.0, 0.0]));

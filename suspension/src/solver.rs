@@ -138,6 +138,7 @@ impl Solver {
         let kinds = self.first_kinds(&suspension, &gaps, start)?;
         let options = self.options.clone();
         let operators = self.operators.clone();
+        let classes = self.classes.clone();
         let rounds = Rounds {
             narrow: is_narrow(&suspension.bodies, &gaps),
             suspension: &suspension,
@@ -145,7 +146,7 @@ impl Solver {
             wanted: options.accuracy.wanted(),
             options: &options,
             operators: &operators,
-            classes: &self.classes,
+            classes: &classes,
             viscosity: asked.viscosity,
             progress,
         };

@@ -121,6 +121,11 @@ impl SurfaceGrid {
         self.nodes * self.azimuths
     }
 
+    /// Whether there are no points.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
     /// Azimuths of each node.
     pub fn azimuths(&self) -> usize {
         self.azimuths

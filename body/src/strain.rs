@@ -12,18 +12,18 @@
 //! Force $F$ and torque $T$ **of the fluid on the body** and its [`stresslet`] $S$ are
 //! (Kim & Karrila 1991, section 5.1)
 //!
-//! $$ F_i = \mu \bigl( A (U_\infty - U) + \tilde B (\Omega_\infty - \Omega) \bigr)_i
-//!    + \mu\\, G_{jki} E_{jk} , $$
-//! $$ T_i = \mu \bigl( B (U_\infty - U) + C (\Omega_\infty - \Omega) \bigr)_i
-//!    + \mu\\, H_{jki} E_{jk} , $$
-//! $$ S_{ij} = \mu\\, G_{ijk} (U_\infty - U)_k + \mu\\, H_{ijk} (\Omega_\infty - \Omega)_k
-//!    + \mu\\, M_{ijkl} E_{kl} . $$
+//! $$ F_i = \mu \bigl( A (U_\infty - U) + \tilde B (\Omega_\infty - \Omega) \bigr)_i +
+//!    \mu\\, G_{jki} E_{jk} , $$
+//! $$ T_i = \mu \bigl( B (U_\infty - U) + C (\Omega_\infty - \Omega) \bigr)_i +
+//!    \mu\\, H_{jki} E_{jk} , $$
+//! $$ S_{ij} = \mu\\, G_{ijk} (U_\infty - U)_k + \mu\\, H_{ijk} (\Omega_\infty - \Omega)_k +
+//!    \mu\\, M_{ijkl} E_{kl} . $$
 //!
 //! That the same $G$ and $H$ are in all of them is the reciprocal theorem. By symmetry about the
 //! axis (Kim & Karrila 1991, section 5.3)
 //!
-//! $$ G_{ijk} = X^G (d_i d_j - \tfrac13 \delta_{ij}) d_k
-//!    + Y^G (d_i \delta_{jk} + d_j \delta_{ik} - 2 d_i d_j d_k) , $$
+//! $$ G_{ijk} = X^G (d_i d_j - \tfrac13 \delta_{ij}) d_k +
+//!    Y^G (d_i \delta_{jk} + d_j \delta_{ik} - 2 d_i d_j d_k) , $$
 //! $$ H_{ijk} = Y^H (\epsilon_{ikl} d_l d_j + \epsilon_{jkl} d_l d_i) , \qquad
 //!    M = X^M d^{(0)} + Y^M d^{(1)} + Z^M d^{(2)} . $$
 //!

@@ -13,8 +13,8 @@ use super::surface::SurfaceModes;
 ///
 /// It is minus the symmetric traceless part of
 ///
-/// $$ A_{jk} = \int \varrho_j x_k\\, d\Gamma
-///    + \int (\nu_k \sigma_j + \nu_j \sigma_k)\\, d\Gamma , $$
+/// $$ A_{jk} = \int \varrho_j x_k\\, d\Gamma +
+///    \int (\nu_k \sigma_j + \nu_j \sigma_k)\\, d\Gamma , $$
 ///
 /// since far away $u_i = S_{ij} F_j - \partial_k S_{ij}\\, A_{jk} + \dots$: the single layer's part
 /// is Taylor's formula, the double layer's follows from

@@ -7,11 +7,11 @@
 //! $\mathcal M_{ij} = \nu_j \partial_i - \nu_i \partial_j$ (Günter; Kupradze 1979, chapter V),
 //! $\tau_i = \mathcal M_{ij}\sigma_j$ and $G = 1/4\pi|\bar x|$
 //!
-//! $$ D[\sigma]_i = \int (\nu'\\!\cdot\nabla' G)\\, \sigma_i - \int G\\, \tau_i
-//!    + 2 \int S_{ij} \tau_j , \qquad
+//! $$ D[\sigma]_i = \int (\nu'\\!\cdot\nabla' G)\\, \sigma_i - \int G\\, \tau_i +
+//!    2 \int S_{ij} \tau_j , \qquad
 //!    p = \int P^S_j (\varrho + 2\tau)_j , $$
-//! $$ \partial_l u_i = \int \partial_l S_{ij} (\varrho + 2\tau)_j - \int \partial_l G\\, \tau_i
-//!    + \Bigl(\nabla \times \int G\\, (\nu\times\nabla) \sigma_i\Bigr)_l $$
+//! $$ \partial_l u_i = \int \partial_l S_{ij} (\varrho + 2\tau)_j - \int \partial_l G\\, \tau_i +
+//!    \Bigl(\nabla \times \int G\\, (\nu\times\nabla) \sigma_i\Bigr)_l $$
 //!
 //! for $u = D[\sigma] + S[\varrho]$ off the surface, with nothing stronger than $1/|\bar x|^2$. The
 //! velocity is computed from $D$ and $S$ as they are.

@@ -12,8 +12,8 @@
 //! $G_n = \nu (D_{n-1} - h Q_n)$
 //!
 //! $$ e_0 = k_0 Q_n, \quad e_1 = \frac{2 k_0 G_n}{h+2}, \quad
-//!    e_2 = \frac{4 k_0}{3}\left[\frac{(n^2 - \tfrac14) h Q_n}{h+2}
-//!    + \frac{2 (1+h) G_n}{(h+2)^2}\right] . $$
+//!    e_2 = \frac{4 k_0}{3}\left[\frac{(n^2 - \tfrac14) h Q_n}{h+2} +
+//!    \frac{2 (1+h) G_n}{(h+2)^2}\right] . $$
 
 use pulp::Simd;
 

@@ -1,8 +1,8 @@
 //! The flow of both layers away from the surface: direct sums over points.
 //!
 //! With the trapezoidal rule in the azimuth and Gauss–Legendre panels along the curve both
-//! converge exponentially in the number of points per distance; where they do not resolve a panel's action,
-//! the [close](super::close) fields take over.
+//! converge exponentially in the number of points per distance; where they do not resolve a panel's
+//! action, the fields of `close` take over.
 
 use std::f64::consts::PI;
 use std::ops::Range;

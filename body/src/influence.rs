@@ -1,7 +1,7 @@
 //! Rows of the near-field matrix: the velocity at a point close to some panels, as a linear map of
 //! the density on them.
 //!
-//! They are the integrals of [`close`](super::close), of the velocity alone: for each mode and node
+//! They are the integrals of `close`, of the velocity alone: for each mode and node
 //! a matrix of three by three. They are stored because an iteration applies them to many densities.
 
 use bodies_of_revolution::Meridian;

@@ -152,17 +152,21 @@ impl Frame {
 
 /// The smallest rotation that takes $e_z$ to `axis`.
 fn smallest_rotation_to(axis: Unit<Vector3<f64>>) -> UnitQuaternion<f64> {
-    let across = axis.x * axis.x + axis.y * axis.y;
-    // 1 + z, without cancellation where z is near -1.
-    let above = if axis.z < 0.0 {
-        across / (1.0 - axis.z)
-    } else {
-        1.0 + axis.z
-    };
-    if above == 0.0 {
+    if axis.z >= 0.0 {
+        return UnitQuaternion::new_normalize(Quaternion::new(1.0 + axis.z, -axis.y, axis.x, 0.0));
+    }
+    // Divided by the distance from -z: near there 1 + z would cancel, and squares underflow.
+    let across = axis.x.hypot(axis.y);
+    if across == 0.0 {
         return UnitQuaternion::new_unchecked(Quaternion::new(0.0, 1.0, 0.0, 0.0));
     }
-    UnitQuaternion::new_normalize(Quaternion::new(above, -axis.y, axis.x, 0.0))
+    let scalar = across / (1.0 - axis.z);
+    UnitQuaternion::new_normalize(Quaternion::new(
+        scalar,
+        -axis.y / across,
+        axis.x / across,
+        0.0,
+    ))
 }
 
 #[cfg(test)]

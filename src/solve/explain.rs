@@ -30,7 +30,7 @@ pub(super) fn explain(case: &Case, error: SuspensionError) -> SolveError {
         } => case.error(
             line(first, second),
             format!(
-                "{} and {} overlap by {depth:.3e} or more: expected bodies that are apart",
+                "{} and {} overlap by {depth:.3e}: expected bodies that are apart",
                 name(first),
                 name(second)
             ),

@@ -12,14 +12,13 @@ use std::fs;
 use std::path::PathBuf;
 
 use axistokes::nalgebra::{Point3, Vector3};
-use axistokes::output::picture::{Quantity, picture};
+use axistokes::output::picture::Quantity;
 use axistokes::output::vtk::{Mesh, plane_file};
-use axistokes::plane::section::sections;
-use axistokes::plane::{Plane, PlaneFlow, PlaneOptions, PlaneOrientation};
+use axistokes::plane::{Plane, PlaneOptions, PlaneOrientation};
 use axistokes::progress::Progress;
 use axistokes::suspension::SolveError;
 use axistokes::{
-    Answer, Body, CurveError, GeneratingCurve, Options, Slip, Solver, Spheroid, Suspension,
+    Answer, Body, CurveError, GeneratingCurve, Options, Slip, Solver, Spheroid, Suspension, View,
 };
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -58,8 +57,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let answer = solver.solve_with(&suspension, None, &bar);
     let answer = answer.or_else(SolveError::answer)?;
     let plane = middle(&suspension, arguments.side);
-    let flow = PlaneFlow::sample(&answer.flow, plane, &bar)?;
-    let drawn = picture(&flow, &sections(&answer.flow, &plane)?, Quantity::Speed)?;
+    let view = View::in_plane(&answer.flow, plane, &bar)?;
+    let drawn = view.picture(Quantity::Speed)?;
     let surfaces = Mesh::of(&answer.flow, |_| AZIMUTHS, &bar)?.file()?;
     bar.0.finish_and_clear();
 
@@ -67,7 +66,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let files = [
         ("bodies.csv", bodies(&suspension, &answer).into_bytes()),
         ("bodies.vtu", surfaces),
-        ("plane.vts", plane_file(&flow)?),
+        ("plane.vts", plane_file(&view.flow)?),
         ("streamlines.svg", drawn.into_bytes()),
     ];
     for (name, bytes) in files {

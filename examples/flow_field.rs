@@ -7,10 +7,9 @@
 use std::error::Error;
 
 use axistokes::nalgebra::Vector3;
-use axistokes::output::picture::{Quantity, picture};
-use axistokes::plane::section::sections;
-use axistokes::plane::{Plane, PlaneFlow, PlaneOptions};
-use axistokes::{Body, GeneratingCurve, Options, Silent, Solver, Spheroid, Suspension};
+use axistokes::output::picture::Quantity;
+use axistokes::plane::{Plane, PlaneOptions};
+use axistokes::{Body, GeneratingCurve, Options, Silent, Solver, Spheroid, Suspension, View};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).unwrap_or("flow.svg".into());
@@ -28,8 +27,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         ..PlaneOptions::default()
     };
     let plane = Plane::of(&suspension, &options);
-    let in_plane = PlaneFlow::sample(&flow, plane, &Silent)?.relative_to(velocity);
-    let drawn = picture(&in_plane, &sections(&flow, &plane)?, Quantity::Speed)?;
+    let view = View::in_plane(&flow, plane, &Silent)?.relative_to(velocity);
+    let drawn = view.picture(Quantity::Speed)?;
     std::fs::write(&path, drawn)?;
     println!("written to {path}");
     Ok(())

@@ -5,11 +5,13 @@
 //! quadrature is exact to rounding also where the kernels are singular. Many bodies are solved for by iteration, with a
 //! fast summation. The answer is forces and torques, or the motions of free bodies, and the flow at any points.
 //!
-//! Two rods, one held in the way of one that sinks; forces, the flow, then the same a little later:
+//! Two rods, one held in the way of one that sinks: forces, the flow, a picture, a file for ParaView, and the same a
+//! little later.
 //!
 //! ```
 //! use axistokes::nalgebra::Point3;
-//! use axistokes::{Body, GeneratingCurve, Options, Solver, Spheroid, Suspension};
+//! use axistokes::output::{picture::Quantity, vtk::Mesh};
+//! use axistokes::{Body, GeneratingCurve, Options, Solver, Spheroid, Suspension, View};
 //!
 //! fn main() -> Result<(), Box<dyn std::error::Error>> {
 //!     let rod = Spheroid::new(1.0, 0.5)?.shape();
@@ -25,6 +27,10 @@
 //!     assert!(flow[0].is_some() && flow[1].is_none()); // in the fluid, inside a body
 //!     let surface = answer.surface(0)?; // points, normals, weights, velocity, traction, pressure
 //!     println!("traction at {}: {}", surface.points[0], surface.traction[0]);
+//!     let folder = std::env::temp_dir();
+//!     let picture = View::of(&suspension, &answer)?.picture(Quantity::Speed)?;
+//!     std::fs::write(folder.join("rods.svg"), picture)?;
+//!     std::fs::write(folder.join("rods.vtu"), Mesh::of_answer(&answer)?.file()?)?;
 //!
 //!     suspension.advance(answer.motions(), 0.5);
 //!     let later = solver.solve_from(&suspension, &answer)?;
@@ -55,11 +61,15 @@
 //!
 //! The types of most programs are here at the root, and [`nalgebra`], whose vectors and points they take.
 
+#[cfg(feature = "cli")]
 pub mod case;
 pub mod output;
 pub mod plane;
+#[cfg(feature = "cli")]
 pub mod resistance;
+#[cfg(feature = "cli")]
 pub mod solve;
+#[cfg(feature = "cli")]
 pub mod study;
 
 pub use bodies_of_revolution as geometry;
@@ -83,6 +93,8 @@ pub use body::resistance::RigidBodyMatrices;
 #[doc(inline)]
 pub use body::resolution::Resolution;
 #[doc(inline)]
+pub use output::View;
+#[doc(inline)]
 pub use progress::{Progress, Silent};
 #[doc(inline)]
 pub use suspension::{
@@ -91,6 +103,6 @@ pub use suspension::{
 };
 
 /// The example of the README is a test.
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "cli"))]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -74,6 +74,10 @@ pub enum Command {
     /// Repeat the convergence study: errors over panels and modes, time over unknowns.
     #[command(after_help = CONVERGE_NOTE)]
     Converge(Converge),
+    /// Grand resistance and mobility matrices of all bodies of a case together.
+    Grand(Grand),
+    /// Gaps between the bodies of a case: distances, nearest points, normals.
+    Gaps(Gaps),
     /// Advance the bodies of a case in time (not built yet).
     #[command(hide = true)]
     Simulate {
@@ -108,6 +112,31 @@ pub struct Solve {
         requires = "picture"
     )]
     pub picture_of: PictureOf,
+}
+
+/// Arguments of `grand`.
+#[derive(Args, Debug)]
+pub struct Grand {
+    /// The case file; what is asked of its bodies does not matter.
+    #[arg(value_name = "CASE.toml")]
+    pub case: PathBuf,
+    /// Print one JSON object and nothing else on stdout.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `gaps`.
+#[derive(Args, Debug)]
+pub struct Gaps {
+    /// The case file; what is asked of its bodies does not matter.
+    #[arg(value_name = "CASE.toml")]
+    pub case: PathBuf,
+    /// Show pairs that are no farther apart; if not given, than the size of the larger one.
+    #[arg(long, value_name = "LENGTH")]
+    pub within: Option<f64>,
+    /// Print one JSON object and nothing else on stdout.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// What the colours of a picture show.

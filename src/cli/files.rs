@@ -3,19 +3,15 @@
 use super::args::Solve;
 use super::failure::Failure;
 use super::folder::Folder;
+use axistokes::SuspensionError;
 use axistokes::case::Case;
-use axistokes::output::picture::{PictureError, Quantity, picture};
+use axistokes::output::picture::{PictureError, Quantity};
 use axistokes::output::vtk::{Mesh, VtkError, plane_file};
-use axistokes::plane::PlaneFlow;
-use axistokes::plane::section::sections;
+use axistokes::output::{View, ViewError};
 use axistokes::progress::Progress;
 use axistokes::solve::Solved;
-use axistokes::{BodyFlow, SuspensionError};
 use std::ffi::OsStr;
 use std::path::Path;
-
-/// Least azimuths of a surface's mesh, and most.
-const AZIMUTHS: [usize; 2] = [64, 512];
 
 /// The files that are asked for, in folders that can be written to.
 pub struct Files {
@@ -56,16 +52,17 @@ impl Files {
         if self.picture.is_none() && self.vtk.is_none() {
             return Ok(String::new());
         }
-        let flow = plane_flow(solved, progress)?;
+        let flow = &solved.answer.flow;
+        let view = View::in_plane(flow, solved.plane, progress)?.relative_to(solved.observer);
         let mut written = Vec::new();
         // Everything is made before anything is written.
         if let Some((folder, name, quantity)) = &self.picture {
-            let drawn = draw(solved, &flow, *quantity)?;
+            let drawn = view.picture(*quantity)?;
             written.push((folder, vec![(name.clone(), drawn.into_bytes())]));
         }
         if let Some(folder) = &self.vtk {
             progress.begin("surface", 0);
-            written.push((folder, vtk_files(case, solved, &flow, progress)?));
+            written.push((folder, vtk_files(case, solved, &view, progress)?));
         }
         if progress.is_cancelled() {
             return Err(Failure::Interrupted);
@@ -99,22 +96,10 @@ fn picture_file(path: &Path, quantity: Quantity) -> Result<(Folder, String, Quan
     Ok((folder, name.to_owned(), quantity))
 }
 
-/// The flow in the plane of the case, seen by whom it says.
-fn plane_flow(solved: &Solved, progress: &dyn Progress) -> Result<PlaneFlow, Failure> {
-    let flow = PlaneFlow::sample(&solved.answer.flow, solved.plane, progress)?;
-    Ok(flow.relative_to(solved.observer))
-}
-
-fn draw(solved: &Solved, flow: &PlaneFlow, quantity: Quantity) -> Result<String, Failure> {
-    let sections = sections(&solved.answer.flow, &flow.plane)
-        .map_err(|error| Failure::Other(error.to_string()))?;
-    picture(flow, &sections, quantity).map_err(Failure::from)
-}
-
 fn vtk_files(
     case: &Case,
     solved: &Solved,
-    flow: &PlaneFlow,
+    view: &View,
     progress: &dyn Progress,
 ) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     let stem = case
@@ -122,11 +107,10 @@ fn vtk_files(
         .file_stem()
         .and_then(OsStr::to_str)
         .unwrap_or("case");
-    let azimuths = |body: &BodyFlow| (4 * body.disturbance.modes()).clamp(AZIMUTHS[0], AZIMUTHS[1]);
-    let surfaces = Mesh::of(&solved.answer.flow, azimuths, progress)?.file()?;
+    let surfaces = Mesh::of(&solved.answer.flow, Mesh::azimuths, progress)?.file()?;
     Ok(vec![
         (format!("{stem}-bodies.vtu"), surfaces),
-        (format!("{stem}-plane.vts"), plane_file(flow)?),
+        (format!("{stem}-plane.vts"), plane_file(&view.flow)?),
     ])
 }
 
@@ -142,6 +126,15 @@ impl From<PictureError> for Failure {
 impl From<VtkError> for Failure {
     fn from(error: VtkError) -> Self {
         Self::Other(error.to_string())
+    }
+}
+
+impl From<ViewError> for Failure {
+    fn from(error: ViewError) -> Self {
+        match error {
+            ViewError::Flow(error) => error.into(),
+            other => Self::Other(other.to_string()),
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! The command line: arguments, exit statuses, one line per error.
 
 mod args;
+mod cluster;
 mod converge;
 mod failure;
 mod files;
@@ -39,6 +40,8 @@ fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
         Command::Solve(solve) => solve::run(solve),
         Command::Resistance(arguments) => resistance::run(arguments),
         Command::Converge(converge) => converge::run(converge),
+        Command::Gaps(gaps) => cluster::gaps(gaps),
+        Command::Grand(grand) => cluster::grand(grand),
         Command::Simulate { .. } => Err(Failure::Input("not supported yet: simulate".into())),
     }
 }

@@ -28,8 +28,14 @@ pub struct ShapeReport {
     /// Force and torque to velocity and angular velocity, row by row.
     pub mobility: [[f64; 6]; 6],
     /// Scalar functions of both for viscosity 1: `XA`, `YA`, `YB`, `XC`, `YC` of the resistance and `xa`, `ya`, `yb`, `xc`, `yc` of
-    /// the mobility; see [`ScalarFunctions`].
+    /// the mobility; see [`ScalarFunctions`]; and those of strain, `XG`, `YG`, `YH`,
+    /// `XM`, `YM`, `ZM`, see [`stokes_body::strain`].
     pub functions: BTreeMap<String, f64>,
+    /// Einstein's coefficient of a dilute suspension of free bodies in all directions, without Brownian motion: the
+    /// viscosity is that of the fluid times one plus this times the volume fraction.
+    pub intrinsic_viscosity: f64,
+    /// Bretherton's constant: how a free body turns in a strain, (r^2 - 1)/(r^2 + 1) for a spheroid of aspect ratio r.
+    pub bretherton_constant: f64,
     /// The point about which rotation and translation do not couple.
     pub center_of_reaction: [f64; 3],
     /// Estimated error of every entry (i, j) of the matrices relative to the root of the product of entries (i, i) and (j, j).
@@ -42,6 +48,7 @@ pub struct ShapeReport {
 /// The scalar functions as Kim & Karrila name them, `XA` for $X^A$, in the order of [`ScalarFunctions`].
 const RESISTANCE_FUNCTIONS: [&str; 5] = ["XA", "YA", "YB", "XC", "YC"];
 const MOBILITY_FUNCTIONS: [&str; 5] = ["xa", "ya", "yb", "xc", "yc"];
+const STRAIN_FUNCTIONS: [&str; 6] = ["XG", "YG", "YH", "XM", "YM", "ZM"];
 
 fn rows(matrix: Matrix6<f64>) -> [[f64; 6]; 6] {
     matrix.transpose().into()
@@ -53,13 +60,18 @@ impl ShapeReport {
         let values = |f: ScalarFunctions| [f.xa, f.ya, f.yb, f.xc, f.yc];
         let of_resistance = values(matrices.resistance.scalar_functions());
         let of_mobility = values(matrices.mobility.scalar_functions());
+        let s = &matrices.strain;
+        let of_strain = [s.xg, s.yg, s.yh, s.xm, s.ym, s.zm];
         let functions = (RESISTANCE_FUNCTIONS.into_iter().zip(of_resistance))
             .chain(MOBILITY_FUNCTIONS.into_iter().zip(of_mobility))
+            .chain(STRAIN_FUNCTIONS.into_iter().zip(of_strain))
             .map(|(name, value)| (name.to_owned(), value));
         Self {
             resistance: rows(viscosity * matrices.resistance.0),
             mobility: rows(matrices.mobility.0 / viscosity),
             functions: functions.collect(),
+            intrinsic_viscosity: matrices.free.intrinsic_viscosity(matrices.volume),
+            bretherton_constant: matrices.free.bretherton_constant(),
             center_of_reaction: matrices.resistance.center_of_reaction().into(),
             error_estimate: matrices.error_estimate,
             discretization: Discretization {
@@ -113,7 +125,7 @@ impl ResistanceReport {
         )?;
         writeln!(
             out,
-            "matrices about the origin of the shape, its axis along z; functions for viscosity 1, named as in Kim & Karrila (1991):\n  \
+            "matrices about the origin of the shape, its axis along z; functions for viscosity 1, named as in Kim & Karrila (1991), not divided by 6 pi a:\n  \
              T = YB U x d in a translation U across the axis d, and angular velocity = yb F x d under such a force F"
         )?;
         self.shapes
@@ -140,6 +152,16 @@ impl ShapeReport {
             out,
             "  centre of reaction {}",
             numbers(&self.center_of_reaction)
+        )?;
+        writeln!(
+            out,
+            "  intrinsic viscosity {}",
+            number(self.intrinsic_viscosity)
+        )?;
+        writeln!(
+            out,
+            "  Bretherton constant {}",
+            number(self.bretherton_constant)
         )?;
         for (name, matrix) in [
             (

@@ -11,7 +11,7 @@ use crate::output::Report;
 use crate::plane::{Plane, PlaneOptions, PlaneOrientation};
 use question::Question;
 use stokes_body::progress::Progress;
-use stokes_suspension::{Answer, SolveError as Unsolved, Solver};
+use stokes_suspension::{Answer, Options, SolveError as Unsolved, Solver, Suspension};
 
 /// Why a case has no answer.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -67,6 +67,15 @@ pub fn solve(case: &Case, progress: &dyn Progress) -> Result<Solved, SolveError>
         plane,
         observer,
     })
+}
+
+/// What a case asks, in the library's terms.
+///
+/// # Errors
+/// If the case asks for the impossible.
+pub fn question_of(case: &Case) -> Result<(Suspension, Options), CaseError> {
+    let question = Question::new(case)?;
+    Ok((question.suspension, question.options))
 }
 
 /// The plane that a case shows.

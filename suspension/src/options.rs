@@ -73,7 +73,8 @@ pub struct Options {
     pub levels: Levels,
     /// How inexact products may become as the residual falls, relative to their results; 0 keeps them exact.
     pub loosest_product: f64,
-    /// Bytes that everything together may take; if not given, seven tenths of what the machine has.
+    /// Bytes that everything together may take; if not given, seven tenths of what the
+    /// machine has (feature `machine-memory`) or of 8 GiB.
     pub memory: Option<usize>,
 }
 

@@ -12,6 +12,7 @@ use svg::node::element::{
 };
 use svg::{Document, Node};
 
+use super::View;
 use super::plot::colour::{blue_red, viridis};
 use crate::plane::streamlines::{Streamline, evenly_spaced};
 use crate::plane::{Plane, PlaneFlow};
@@ -62,7 +63,7 @@ const ARROW: [f64; 3] = [8.5, 3.4, 170.0];
 ///
 /// # Errors
 /// If there is nothing to draw.
-pub fn picture(
+fn picture(
     flow: &PlaneFlow,
     sections: &[Vec<[f64; 2]>],
     quantity: Quantity,
@@ -122,6 +123,16 @@ pub fn picture(
     canvas.axes(&mut document, &flow.plane);
     canvas.colour_bar(&mut document, &scale);
     Ok(document.to_string() + "\n")
+}
+
+impl View {
+    /// The picture as SVG.
+    ///
+    /// # Errors
+    /// If there is nothing to draw.
+    pub fn picture(&self, quantity: Quantity) -> Result<String, PictureError> {
+        picture(&self.flow, &self.sections, quantity)
+    }
 }
 
 /// Where the plane is on the picture.

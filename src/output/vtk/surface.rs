@@ -14,9 +14,9 @@ use bodies_of_revolution::Topology;
 use stokes_body::discretization::Discretization;
 use stokes_body::flow::AXIAL;
 use stokes_body::flow::SurfaceStress;
-use stokes_body::progress::Progress;
+use stokes_body::progress::{Progress, Silent};
 use stokes_body::surface::SurfaceModes;
-use stokes_suspension::{BodyFlow, Flow, SuspensionError};
+use stokes_suspension::{Answer, BodyFlow, Flow, SuspensionError};
 
 /// The surfaces of bodies as closed meshes with what acts on them, in the laboratory.
 #[derive(Clone, Debug, Default)]
@@ -38,6 +38,19 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// The surfaces of all bodies of an answer, with as many azimuths as show their modes.
+    ///
+    /// # Errors
+    /// If a quadrature rule is missing.
+    pub fn of_answer(answer: &Answer) -> Result<Self, SuspensionError> {
+        Self::of(&answer.flow, Self::azimuths, &Silent)
+    }
+
+    /// Azimuths that show the modes of a body: 64 to 512.
+    pub fn azimuths(body: &BodyFlow) -> usize {
+        (4 * body.disturbance.modes()).clamp(64, 512)
+    }
+
     /// The surfaces of all bodies in a flow, each with so many azimuths.
     ///
     /// # Errors

@@ -1,7 +1,8 @@
 //! What a point costs by its distance from the surface: `cargo bench --bench close`.
 //!
-//! One thread, the thesis's body with 8 panels of 16 nodes and 60 modes; each figure is the median of seven rounds in which all distances
-//! take turns, so that ratios mean something on a noisy machine.
+//! One thread, the thesis's body with 8 panels of 16 nodes and 60 modes; each figure is the median
+//! of seven rounds in which all distances take turns, so that ratios mean something on a noisy
+//! machine.
 
 use std::sync::Arc;
 use std::time::Instant;

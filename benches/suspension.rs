@@ -1,13 +1,18 @@
 //! Suspensions: the table 3.1 of the thesis, and figures of the multibody solver.
 //!
-//!     cargo bench --bench suspension -- table [MOST [FEWEST]]    the thesis's table, its figures beside ours
-//!     cargo bench --bench suspension -- chosen BODIES TOLERANCE  its test with points chosen for a tolerance
-//!     cargo bench --bench suspension -- iterations [bodies on a side ...]
-//!     cargo bench --bench suspension -- product [BODIES] [TOLERANCE]   products at one tolerance beside their sums over points
-//!     cargo bench --bench suspension -- solve BODIES TOLERANCE [PANELS ORDER MODES]   one suspension of free bodies, time and memory; 0 panels: the solver chooses
-//!     cargo bench --bench suspension -- error BODIES TOLERANCE   by how much the motions found with 2550 points each are off
+//! Each is asked for by `cargo bench --bench suspension --` and a word:
 //!
-//! Spheroids on a cubic grid of spacing 2.4, axes at random; the thesis's have 5 panels of 10 nodes and 25 modes, 2550 points each.
+//! - `table [MOST [FEWEST]]`: the thesis's table, its figures beside ours
+//! - `chosen BODIES TOLERANCE`: its test with points chosen for a tolerance
+//! - `iterations [bodies on a side ...]`
+//! - `product [BODIES] [TOLERANCE]`: products at one tolerance beside their sums over points
+//! - `solve BODIES TOLERANCE [PANELS ORDER MODES]`: one suspension of free bodies, time and memory;
+//!   with 0 panels the solver chooses
+//! - `error BODIES TOLERANCE`: by how much the motions found with 2550 points each are off
+//! - `walk BODIES STEPS TOLERANCE`: a random walk with one solver, beside fresh ones
+//!
+//! Spheroids on a cubic grid of spacing 2.4, axes at random; the thesis's have 5 panels of 10 nodes
+//! and 25 modes, 2550 points each.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -23,15 +28,18 @@ use axistokes::{
 const SPACING: f64 = 2.4;
 /// Panels, nodes on each, and modes: 2550 points.
 const THESIS_POINTS: [usize; 3] = [5, 10, 25];
-/// Shapes in the table: every body its own up to the thesis's 256. Of a thousand shapes the matrices would fill the memory.
+/// Shapes in the table: every body its own up to the thesis's 256. Of a thousand shapes the
+/// matrices would fill the memory.
 const SHAPES: usize = 256;
-/// Most bodies for which the preconditioner without its second level is tried: it takes many iterations.
+/// Most bodies for which the preconditioner without its second level is tried: it takes many
+/// iterations.
 const ONE_LEVEL: usize = 100;
 
 type ThesisRow = (usize, usize, f64, f64, Option<(usize, f64)>, f64, f64);
 type Question = (Vec<Body>, Vec<Arc<Resolution>>);
 
-/// The thesis's rows: threads, bodies, T_ker, T_inv, n_op, T_near, T_fmm, absolute error; none where it did not converge.
+/// The thesis's rows: threads, bodies, T_ker, T_inv, n_op, T_near, T_fmm, absolute error; none
+/// where it did not converge.
 const THESIS: [ThesisRow; 18] = [
     (1, 2, 3.8, 0.1, Some((14, 4.4471e-7)), 1.1, 2.0),
     (1, 4, 4.2, 1.3, Some((22, 1.0709e-6)), 2.5, 4.5),
@@ -85,8 +93,13 @@ fn main() -> Result<(), Box<dyn Error>> {
             )
         }
         Some("error") => error(number(1, 125.0) as usize, number(2, 1e-7)),
+        Some("walk") => walk(
+            number(1, 27.0) as usize,
+            number(2, 20.0) as usize,
+            number(3, 1e-4),
+        ),
         _ => {
-            println!("nothing asked for: table, chosen, iterations, product, solve or error");
+            println!("nothing asked for: table, chosen, iterations, product, solve, error or walk");
             Ok(())
         }
     }
@@ -203,7 +216,8 @@ fn chosen(count: usize, tolerance: f64) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The absolute error of the velocity at points outside; the thesis's points, or those that the solver chooses for a tolerance.
+/// The absolute error of the velocity at points outside; the thesis's points, or those that the
+/// solver chooses for a tolerance.
 fn known_flow(count: usize, tolerance: Option<f64>) -> Result<(Answer, f64), String> {
     let mut chance = fastrand::Rng::with_seed(31);
     let frames = frames(count, &mut chance);
@@ -337,7 +351,8 @@ fn iterations(sides: &[usize]) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// An iteration whose products are all made to one tolerance: all that it takes over its sums alone, plans included in both.
+/// An iteration whose products are all made to one tolerance: all that it takes over its sums
+/// alone, plans included in both.
 fn product(count: usize, tolerance: f64) -> Result<(), Box<dyn Error>> {
     for free in [true, false] {
         let (bodies, resolutions) = rods_and_discs(count, free, THESIS_POINTS)?;
@@ -419,6 +434,76 @@ fn error(count: usize, tolerance: f64) -> Result<(), Box<dyn Error>> {
         by_hand.error_estimate,
         better.error_estimate
     );
+    Ok(())
+}
+
+/// A random walk in steps of 0.02 radii: one solver that starts each answer from the one before,
+/// and fresh solvers.
+fn walk(count: usize, steps: usize, tolerance: f64) -> Result<(), Box<dyn Error>> {
+    for free in [false, true] {
+        let (bodies, _) = rods_and_discs(count, free, THESIS_POINTS)?;
+        let mut suspension = Suspension::new(bodies);
+        let mut chance = fastrand::Rng::with_seed(7);
+        let mut solver = Solver::new(Options::tolerance(tolerance));
+        let setup = |answer: &Answer| {
+            let t = answer.statistics.timings;
+            [t.assemble + t.factor, t.near]
+        };
+        let mut before = solver.solve(&suspension).or_else(SolveError::answer)?;
+        let first = setup(&before);
+        println!(
+            "{count} {} bodies to {tolerance:.0e}; first: {} rounds, assemble and factor {:.3} s, near rows {:.3} s, {:?}",
+            if free { "free" } else { "held" },
+            before.statistics.rounds,
+            first[0],
+            first[1],
+            before.statistics.timings,
+        );
+        let mut sums = [0.0f64; 6];
+        let mut apart = 0.0f64;
+        for _ in 0..steps {
+            for body in &mut suspension.bodies {
+                let step = 0.02 * random(&mut chance).normalize();
+                body.frame = body
+                    .frame
+                    .moved(step, 0.02 * random(&mut chance).normalize());
+            }
+            let start = std::time::Instant::now();
+            let kept = solver.solve_from(&suspension, &before);
+            let kept = kept.or_else(SolveError::answer)?;
+            sums[0] += start.elapsed().as_secs_f64();
+            let start = std::time::Instant::now();
+            let fresh = answer(&suspension, Options::tolerance(tolerance))?;
+            sums[1] += start.elapsed().as_secs_f64();
+            let [matrices, near] = setup(&kept);
+            sums[2] += matrices;
+            sums[3] += near;
+            sums[4] += kept.statistics.iteration.iterations as f64;
+            sums[5] += fresh.statistics.iteration.iterations as f64;
+            let off = kept.bodies.iter().zip(&fresh.bodies).map(|(a, b)| {
+                let motion = (a.motion - b.motion).velocity.norm() / fresh.largest_speed;
+                let largest = fresh.bodies.iter().map(|b| b.wrench.force.norm());
+                let largest = largest.fold(f64::MIN_POSITIVE, f64::max);
+                motion.max((a.wrench - b.wrench).force.norm() / largest)
+            });
+            let allowed = kept.error_estimate + fresh.error_estimate;
+            apart = apart.max(off.fold(0.0, f64::max) / allowed);
+            before = kept;
+        }
+        let n = steps as f64;
+        println!(
+            "later, mean of {steps}: {:.3} s each (fresh {:.3} s), assemble and factor {:.3} s, near rows {:.3} s: set-up {:.1} % of the first's; {:.1} iterations from a start, {:.1} fresh ({:.0} %); answers apart by at most {:.2} of both estimates",
+            sums[0] / n,
+            sums[1] / n,
+            sums[2] / n,
+            sums[3] / n,
+            100.0 * (sums[2] + sums[3]) / n / (first[0] + first[1]),
+            sums[4] / n,
+            sums[5] / n,
+            100.0 * sums[4] / sums[5],
+            apart,
+        );
+    }
     Ok(())
 }
 

@@ -1,5 +1,5 @@
-//! The resistance of spheroids, from disc to needle, against the closed forms of Oberbeck and Jeffery
-//! (Kim & Karrila, Microhydrodynamics, 1991, tables 3.4 and 3.6).
+//! The resistance of spheroids, from disc to needle, against the closed forms of Oberbeck and
+//! Jeffery (Kim & Karrila, Microhydrodynamics, 1991, tables 3.4 and 3.6).
 //!
 //!     cargo run --release --example drag
 
@@ -14,7 +14,8 @@ use axistokes::{Panels, RigidMotion, Silent, Spheroid};
 /// Tolerance for the panels: how well they resolve the curve.
 const TOLERANCE: f64 = 1e-10;
 
-/// Force along and across the axis, torque along and across it, for unit (angular) velocity and viscosity 1.
+/// Force along and across the axis, torque along and across it, for unit (angular) velocity and
+/// viscosity 1.
 type Resistance = [f64; 4];
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -43,7 +44,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The number of panels used, and the resistance. The matrices are factored once and serve all four motions.
+/// The number of panels used, and the resistance. The matrices are factored once and serve all four
+/// motions.
 fn resistance(polar: f64, equatorial: f64) -> Result<(usize, Resistance), Box<dyn Error>> {
     let curve = Arc::new(Spheroid::new(polar, equatorial)?);
     let panels = Panels::resolving(&*curve, 16, TOLERANCE)?;

@@ -1,10 +1,11 @@
-//! 125 ellipsoids of random shape and direction in a 5 x 5 x 5 grid, each driving the fluid over its surface from pole to pole with 10 units
-//! of velocity at the equator.
+//! 125 ellipsoids of random shape and direction in a 5 x 5 x 5 grid, each driving the fluid over
+//! its surface from pole to pole with 10 units of velocity at the equator.
 //!
 //!     cargo run --release --example ellipsoid_suspension
 //!
-//! writes to `ellipsoids/` (or `--directory`): motions and forces of all bodies as a table; surfaces and middle plane for
-//! ParaView; a picture of the streamlines. `--side 3` has 27 of them, `--free` lets them swim, `--tolerance 1e-6` is more accurate.
+//! writes to `ellipsoids/` (or `--directory`): motions and forces of all bodies as a table;
+//! surfaces and middle plane for ParaView; a picture of the streamlines. `--side 3` has 27 of them,
+//! `--free` lets them swim, `--tolerance 1e-6` is more accurate.
 
 use std::error::Error;
 use std::fmt::Write;

@@ -1,12 +1,14 @@
-//! Stokes flow around bodies of revolution, by boundary integral equations, with an error that is estimated.
+//! Stokes flow around bodies of revolution, by boundary integral equations, with an error that is
+//! estimated.
 //!
-//! A body is given by its generating curve, by what is known of its motion and by what its surface does. In the azimuth
-//! the equations on the surface decouple into Fourier modes; each is solved on the curve by a Nyström method whose
-//! quadrature is exact to rounding also where the kernels are singular. Many bodies are solved for by iteration, with a
-//! fast summation. The answer is forces and torques, or the motions of free bodies, and the flow at any points.
+//! A body is given by its generating curve, by what is known of its motion and by what its surface
+//! does. In the azimuth the equations on the surface decouple into Fourier modes; each is solved on
+//! the curve by a Nyström method whose quadrature is exact to rounding also where the kernels are
+//! singular. Many bodies are solved for by iteration, with a fast summation. The answer is forces
+//! and torques, or the motions of free bodies, and the flow at any points.
 //!
-//! Two rods, one held in the way of one that sinks: forces, the flow, a picture, a file for ParaView, and the same a
-//! little later.
+//! Two rods, one held in the way of one that sinks: forces, the flow, a picture, a file for
+//! ParaView, and the same a little later.
 //!
 //! ```
 //! use axistokes::nalgebra::Point3;
@@ -59,7 +61,8 @@
 //! | [`body`] | one body in its own frame: modal kernels, matrices, factors, flow |
 //! | [`suspension`] | any number of bodies: question, solver, answer |
 //!
-//! The types of most programs are here at the root, and [`nalgebra`], whose vectors and points they take.
+//! The types of most programs are here at the root, and [`nalgebra`], whose vectors and points they
+//! take.
 
 #[cfg(feature = "cli")]
 pub mod case;

@@ -8,8 +8,8 @@ use stokes_body::error::BodyError;
 use stokes_body::progress::Progress;
 use stokes_body::resistance::RigidBodyMatrices;
 
-/// Resistance and mobility of every shape of a case, each about its origin and in its own frame: bodies and what is imposed on them
-/// do not matter.
+/// Resistance and mobility of every shape of a case, each about its origin and in its own frame:
+/// bodies and what is imposed on them do not matter.
 ///
 /// The report is returned even when an error estimate exceeds the tolerance: the caller compares.
 ///

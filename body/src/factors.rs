@@ -186,8 +186,9 @@ impl ModalFactors {
         solve_transpose(packed, &self.permutations[n], columns);
     }
 
-    /// Solves in place with the transposes of the matrices, for columns of mode `n` that are scaled by the roots of
-    /// the weights: what a linear functional of the density is as one of the boundary values.
+    /// Solves in place with the transposes of the matrices, for columns of mode `n` that are scaled
+    /// by the roots of the weights: what a linear functional of the density is as one of the
+    /// boundary values.
     pub fn solve_transposed_scaled(&self, n: usize, columns: MatMut<'_, f64>) {
         let size = self.unknowns * self.unknowns;
         // The factors are the transposed matrix's.

@@ -1,9 +1,10 @@
 //! Velocity, pressure, velocity gradient and stress at any point of space.
 //!
-//! Points are sorted by what each panel needs: far ones are summed directly (`far`), for close ones the panels that the sum
-//! does not resolve are done mode by mode (`close`), at a cost that grows with the logarithm of the distance. On the surface the flow
-//! is the limit from one side, taken 1e-14 body sizes away, where the flow differs from it by rounding. A point is on the surface if it is nearer
-//! than [`ON_SURFACE`].
+//! Points are sorted by what each panel needs: far ones are summed directly (`far`), for close ones
+//! the panels that the sum does not resolve are done mode by mode (`close`), at a cost that grows
+//! with the logarithm of the distance. On the surface the flow is the limit from one side, taken
+//! 1e-14 body sizes away, where the flow differs from it by rounding. A point is on the surface if
+//! it is nearer than [`ON_SURFACE`].
 
 use std::f64::consts::PI;
 use std::sync::{Arc, OnceLock};
@@ -27,7 +28,8 @@ use bodies_of_revolution::curve::ON_SURFACE;
 
 /// The flow of densities on a body, for viscosity 1, in the body's frame.
 ///
-/// What an evaluation needs of the densities is made at the first one and kept: later ones cost the evaluation alone.
+/// What an evaluation needs of the densities is made at the first one and kept: later ones cost the
+/// evaluation alone.
 #[derive(Debug)]
 pub struct Flow {
     discretization: Arc<Discretization>,
@@ -43,7 +45,8 @@ pub struct Flow {
 pub struct SurfaceStress {
     /// The traction, a force per area.
     pub traction: SurfaceModes,
-    /// The vector field $p\, e_z$: its axial component is the pressure, whose modes behave like those of an axial component.
+    /// The vector field $p\, e_z$: its axial component is the pressure, whose modes behave like
+    /// those of an axial component.
     pub pressure_along_axis: SurfaceModes,
 }
 
@@ -82,13 +85,15 @@ pub enum FlowError {
     Quadrature(#[from] QuadratureError),
 }
 
-/// How near a point is beside another, in widths of the latter's share of the surface: there a gradient's kernel still leaves ten digits.
+/// How near a point is beside another, in widths of the latter's share of the surface: there a
+/// gradient's kernel still leaves ten digits.
 const BESIDE: f64 = 0.03;
 /// Distance from the surface, in body sizes, at which the limits are taken.
 const LIMIT: f64 = 1e-14;
 
 impl Flow {
-    /// The flow of densities on the nodes of `discretization`; on the surface, the limit from outside.
+    /// The flow of densities on the nodes of `discretization`; on the surface, the limit from
+    /// outside.
     pub fn new(discretization: impl Into<Arc<Discretization>>, layers: Layers) -> Self {
         Self {
             discretization: discretization.into(),
@@ -105,8 +110,8 @@ impl Flow {
         Self { side, ..self }
     }
 
-    /// Velocity and pressure at every target, inside, outside or on the surface, with an error of the quadrature below `tolerance`
-    /// relative to the densities.
+    /// Velocity and pressure at every target, inside, outside or on the surface, with an error of
+    /// the quadrature below `tolerance` relative to the densities.
     ///
     /// # Errors
     /// [`FlowError::NotFinite`] for a target that is not a point.
@@ -137,12 +142,12 @@ impl Flow {
         &self.layers
     }
 
-    /// The modes of the traction $(-p I + \nabla u + (\nabla u)^\mathsf{T}) \nu$ on one side of the surface, with the
-    /// normal $\nu$ out of the body.
+    /// The modes of the traction $(-p I + \nabla u + (\nabla u)^\mathsf{T}) \nu$ on one side of the
+    /// surface, with the normal $\nu$ out of the body.
     ///
-    /// The traction of a double layer is hypersingular: its finite part is the limit of what integration by parts
-    /// leaves of it off the surface, where only integrable kernels of the density's tangential derivatives stand
-    /// (`kernel::close`).
+    /// The traction of a double layer is hypersingular: its finite part is the limit of what
+    /// integration by parts leaves of it off the surface, where only integrable kernels of the
+    /// density's tangential derivatives stand (`kernel::close`).
     ///
     /// # Errors
     /// If a quadrature rule is missing.
@@ -192,8 +197,9 @@ impl Flow {
         })
     }
 
-    /// What the points of [`for_each_point`](Self::for_each_point) get wrong near the surface: for every target for which that is more than `tolerance`
-    /// relative to the densities, its place and what is to be added.
+    /// What the points of [`for_each_point`](Self::for_each_point) get wrong near the surface: for
+    /// every target for which that is more than `tolerance` relative to the densities, its place
+    /// and what is to be added.
     ///
     /// # Errors
     /// If a quadrature rule is missing.
@@ -208,8 +214,8 @@ impl Flow {
         self.evaluate_close::<GRADIENT>(targets, &is_far, far, &separation, Rest::Points)
     }
 
-    /// Whether a point is so near one of the points that both the sum and what [`corrections`](Self::corrections) takes away of it are too large
-    /// for their difference.
+    /// Whether a point is so near one of the points that both the sum and what
+    /// [`corrections`](Self::corrections) takes away of it are too large for their difference.
     pub fn is_beside_a_point(&self, at: Point3<f64>) -> Result<bool, FlowError> {
         let seen = Meridian::of(&at);
         let spacing = 2.0 * PI / self.azimuths()? as f64;
@@ -222,7 +228,8 @@ impl Flow {
         }))
     }
 
-    /// The largest distance from the origin at which [`corrections`](Self::corrections) may find anything.
+    /// The largest distance from the origin at which [`corrections`](Self::corrections) may find
+    /// anything.
     pub fn correction_reach(&self, tolerance: f64) -> Result<f64, FlowError> {
         let size = self.discretization.size();
         let separation = self.far()?.separation(tolerance);
@@ -326,7 +333,8 @@ impl Flow {
             return Ok(Vec::new());
         }
         let close = self.close()?;
-        // Targets on one ring, up to rounding, share all of the work but the last sum over the modes.
+        // Targets on one ring, up to rounding, share all of the work but the last sum over the
+        // modes.
         let grain = LIMIT * self.discretization.size();
         let ring = |index: usize| {
             let Meridian { r, z } = Meridian::of(&targets[index]);
@@ -402,7 +410,8 @@ impl Flow {
         Ok(found)
     }
 
-    /// The point seen from the curve; if it is on the surface, a point on the side of the limit instead.
+    /// The point seen from the curve; if it is on the surface, a point on the side of the limit
+    /// instead.
     fn sight(&self, point: Meridian) -> Sight {
         let sight = close::sight(&self.discretization, point);
         let distance = sight.gap.r.hypot(sight.gap.z);

@@ -2,7 +2,8 @@
 
 use super::surface::SurfaceModes;
 
-/// How much of each layer potential of one density makes up a flow: $u = w_D D[\sigma] + w_S S[\sigma]$.
+/// How much of each layer potential of one density makes up a flow: $u = w_D D[\sigma] + w_S
+/// S[\sigma]$.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LayerWeights {
     /// Weight $w_D$ of the double layer, a number.

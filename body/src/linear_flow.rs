@@ -8,7 +8,8 @@ use super::surface::{Sampled, SurfaceModes};
 
 /// A flow $u(x) = U + G x$ that a body disturbs; its pressure is zero.
 ///
-/// It solves the Stokes equations if it has no divergence, $\operatorname{tr} G = 0$, which is for the caller to see to.
+/// It solves the Stokes equations if it has no divergence, $\operatorname{tr} G = 0$, which is for
+/// the caller to see to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearFlow {
     /// Velocity $U$ at the origin.
@@ -34,8 +35,8 @@ impl LinearFlow {
         }
     }
 
-    /// Simple shear $u = \dot\gamma\\, e\\, (g \cdot x)$ with rate $\dot\gamma$, for orthogonal unit vectors $e$ along the flow and $g$
-    /// along its gradient.
+    /// Simple shear $u = \dot\gamma\\, e\\, (g \cdot x)$ with rate $\dot\gamma$, for orthogonal
+    /// unit vectors $e$ along the flow and $g$ along its gradient.
     pub fn shear(rate: f64, flow: Vector3<f64>, gradient: Vector3<f64>) -> Self {
         Self {
             velocity: Vector3::zeros(),
@@ -48,7 +49,8 @@ impl LinearFlow {
         self.velocity + self.gradient * x
     }
 
-    /// The flow as an observer in a body's frame sees it: velocities turned, lengths in units of the body's scale.
+    /// The flow as an observer in a body's frame sees it: velocities turned, lengths in units of
+    /// the body's scale.
     pub fn in_frame(&self, frame: &Frame) -> Self {
         Self {
             velocity: frame.vector_to_body(self.at(frame.center().coords)),

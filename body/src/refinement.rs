@@ -1,8 +1,9 @@
 //! Panels refined until an estimated error is small enough.
 //!
-//! Everything is computed twice: on the discretization asked for, and on one that has the same panels with more nodes on each,
-//! more modes, and other quadrature for the near interactions. The difference between the two is the error of the coarser, which is
-//! the one reported; where the coarser is not good enough the panels that resolve the density worst are bisected.
+//! Everything is computed twice: on the discretization asked for, and on one that has the same
+//! panels with more nodes on each, more modes, and other quadrature for the near interactions. The
+//! difference between the two is the error of the coarser, which is the one reported; where the
+//! coarser is not good enough the panels that resolve the density worst are bisected.
 
 use std::f64::consts::PI;
 
@@ -49,8 +50,8 @@ pub fn first_panels(
     Ok(panels.graded_across_joints(curve))
 }
 
-/// Answers on finer and finer panels until one is estimated to be as good as the tolerance: that one, or the best there is.
-/// `affordable` says whether so many panels may be tried.
+/// Answers on finer and finer panels until one is estimated to be as good as the tolerance: that
+/// one, or the best there is. `affordable` says whether so many panels may be tried.
 pub fn refine<A: Clone, E: From<QuadratureError>>(
     curve: &dyn GeneratingCurve,
     first: Panels,
@@ -86,8 +87,8 @@ pub fn error_estimate(discretization: &Discretization, difference: f64) -> f64 {
     SAFETY * difference + ROUNDING * thinness(discretization)
 }
 
-/// $A^2 / 12\pi a V$ for area, size and volume: 1 for a sphere and about that for a needle, but the aspect ratio of a disc, whose two
-/// faces nearly cancel and lose as many digits.
+/// $A^2 / 12\pi a V$ for area, size and volume: 1 for a sphere and about that for a needle, but the
+/// aspect ratio of a disc, whose two faces nearly cancel and lose as many digits.
 fn thinness(discretization: &Discretization) -> f64 {
     // The volume is a third of the flux of the position, x . nu.
     let flux: f64 = (discretization.nodes().iter())
@@ -97,7 +98,8 @@ fn thinness(discretization: &Discretization) -> f64 {
     (area * area / (8.0 * PI * PI * size * flux)).max(1.0)
 }
 
-/// Panels on which densities are resolved worst, by the last two of their Legendre coefficients there.
+/// Panels on which densities are resolved worst, by the last two of their Legendre coefficients
+/// there.
 ///
 /// The difference of two densities would not do: what one panel misses spreads over all.
 pub fn unresolved_panels(
@@ -106,7 +108,8 @@ pub fn unresolved_panels(
 ) -> Result<Vec<bool>, QuadratureError> {
     let order = discretization.order();
     let mut missed = vec![0.0f64; discretization.panels().len()];
-    // Densities of several problems need not be alike in size: each counts relative to its own worst panel.
+    // Densities of several problems need not be alike in size: each counts relative to its own
+    // worst panel.
     for density in densities {
         let mut of_one = vec![0.0f64; missed.len()];
         for n in 0..density.modes() {

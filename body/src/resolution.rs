@@ -18,7 +18,8 @@ pub fn checking_modes(modes: usize) -> usize {
     modes + 8.max(modes / 4)
 }
 
-/// Entries of all the matrices of the solution that checks one with so many panels, nodes on each, and modes.
+/// Entries of all the matrices of the solution that checks one with so many panels, nodes on each,
+/// and modes.
 pub fn matrix_entries(panels: usize, order: usize, modes: usize) -> f64 {
     let unknowns = (3 * panels * (order + super::refinement::EXTRA_ORDER)) as f64;
     unknowns * unknowns * (checking_modes(modes) + 1) as f64

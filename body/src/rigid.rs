@@ -31,8 +31,8 @@ impl SurfaceModes {
         modes
     }
 
-    /// The integrals of the field and of $x \times$ the field over the surface: force and torque about the origin of
-    /// the density of a single layer.
+    /// The integrals of the field and of $x \times$ the field over the surface: force and torque
+    /// about the origin of the density of a single layer.
     pub fn wrench(&self, discretization: &Discretization) -> Wrench {
         let mut force = Vector3::zeros();
         let mut torque = Vector3::zeros();

@@ -1,6 +1,7 @@
 //! Vector fields on the surface and their azimuthal modes.
 //!
-//! A field is a sum over modes and the two families of [`matrix`](super::matrix); its components are cylindrical.
+//! A field is a sum over modes and the two families of [`matrix`](super::matrix); its components
+//! are cylindrical.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -32,7 +33,8 @@ pub struct Sampled {
     pub largest: f64,
 }
 
-/// Samples around each ring that determine modes up to `n_max`, with room for a few beyond: a length the FFT is quick at.
+/// Samples around each ring that determine modes up to `n_max`, with room for a few beyond: a
+/// length the FFT is quick at.
 pub fn azimuths(n_max: usize) -> usize {
     let least = 2 * n_max + 8;
     (least..)
@@ -53,7 +55,8 @@ impl SurfaceModes {
         }
     }
 
-    /// The modes up to `n_max` of the field `f`, a vector in the body's frame at a point of its surface.
+    /// The modes up to `n_max` of the field `f`, a vector in the body's frame at a point of its
+    /// surface.
     pub fn sample(
         discretization: &Discretization,
         n_max: usize,
@@ -87,8 +90,9 @@ impl SurfaceModes {
         Sampled { modes, largest }
     }
 
-    /// The modes up to `n_max` of a field on rings of `count` points, the first of them `halves` half steps from azimuth zero: the Cartesian `value` at
-    /// a node and a point's cosine and sine, asked for ring after ring.
+    /// The modes up to `n_max` of a field on rings of `count` points, the first of them `halves`
+    /// half steps from azimuth zero: the Cartesian `value` at a node and a point's cosine and sine,
+    /// asked for ring after ring.
     pub fn of_samples(
         nodes: usize,
         n_max: usize,
@@ -147,7 +151,8 @@ impl SurfaceModes {
         }
     }
 
-    /// The inner product $\int a \cdot b\, d\Gamma$ with another field on the nodes of `discretization`.
+    /// The inner product $\int a \cdot b\, d\Gamma$ with another field on the nodes of
+    /// `discretization`.
     pub fn inner_product(&self, discretization: &Discretization, other: &Self) -> f64 {
         let mut sum = 0.0;
         for (n, k) in (0..self.modes.min(other.modes)).flat_map(|n| (0..6).map(move |k| (n, k))) {
@@ -187,7 +192,8 @@ impl SurfaceModes {
         }
     }
 
-    /// The field at the nodes of another discretization of the same curve, by interpolation along it; without the modes above `n_max`.
+    /// The field at the nodes of another discretization of the same curve, by interpolation along
+    /// it; without the modes above `n_max`.
     pub fn resampled(
         &self,
         from: &Discretization,
@@ -213,9 +219,11 @@ impl SurfaceModes {
         Ok(resampled)
     }
 
-    /// The field in a frame whose axes are turned by `rotation`, on the nodes of a sphere; its vectors turn along.
+    /// The field in a frame whose axes are turned by `rotation`, on the nodes of a sphere; its
+    /// vectors turn along.
     ///
-    /// With $q$ the rotation it is $q^{-1} f(q x)$, interpolated along the curve: exact to what nodes and modes resolve.
+    /// With $q$ the rotation it is $q^{-1} f(q x)$, interpolated along the curve: exact to what
+    /// nodes and modes resolve.
     ///
     /// # Errors
     /// If the nodes of a panel cannot be interpolated.

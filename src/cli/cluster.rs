@@ -1,4 +1,5 @@
-//! `axistokes gaps` and `axistokes grand`: what bodies in their places are to each other, whatever is asked of them.
+//! `axistokes gaps` and `axistokes grand`: what bodies in their places are to each other, whatever
+//! is asked of them.
 
 use std::fmt::Write;
 

@@ -9,7 +9,8 @@ use axistokes::case::{Case, CaseError};
 use axistokes::resistance::resistance;
 use axistokes::solve::SolveError;
 
-/// Prints resistance and mobility of the shapes of a case; what misses its tolerance is printed too, then fails.
+/// Prints resistance and mobility of the shapes of a case; what misses its tolerance is printed
+/// too, then fails.
 pub fn run(arguments: &Resistance) -> Result<(), Failure> {
     let case = Case::read(&arguments.case).map_err(SolveError::from)?;
     let bar = StderrBar::new();

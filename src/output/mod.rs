@@ -1,4 +1,5 @@
-//! What an answer looks like: as JSON, as tables for people, as CSV, as plots and pictures, and as VTK files.
+//! What an answer looks like: as JSON, as tables for people, as CSV, as plots and pictures, and as
+//! VTK files.
 
 #[cfg(feature = "pictures")]
 pub mod picture;

@@ -9,14 +9,15 @@ pub struct Report {
     pub bodies: Vec<BodyReport>,
     /// One entry per probe, in the order of the case.
     pub probes: Vec<ProbeReport>,
-    /// Estimated error: of the velocities at the probes relative to the largest speed imposed, and of forces,
-    /// torques and rigid velocities relative to their largest value.
+    /// Estimated error: of the velocities at the probes relative to the largest speed imposed, and
+    /// of forces, torques and rigid velocities relative to their largest value.
     pub error_estimate: f64,
     /// Estimated error of the pressures at the probes, absolute.
     pub pressure_error_estimate: f64,
     /// Iterations of the linear solver; 0 for a direct solve.
     pub iterations: usize,
-    /// Products with the system's matrix, those of coarser solutions before the last one included; 0 for a direct solve.
+    /// Products with the system's matrix, those of coarser solutions before the last one included;
+    /// 0 for a direct solve.
     pub products: usize,
     /// The relative residual that the iteration came to.
     pub residual: Option<f64>,
@@ -24,7 +25,8 @@ pub struct Report {
     pub stop: Stop,
     /// Unknowns of the linear system, all modes together.
     pub unknowns: usize,
-    /// Points on the surfaces of all bodies that the interactions are summed over; a single body has none.
+    /// Points on the surfaces of all bodies that the interactions are summed over; a single body
+    /// has none.
     pub points: Option<usize>,
     /// One entry per shape and resolution in use.
     pub discretization: Vec<Discretization>,
@@ -50,7 +52,8 @@ pub struct BodyReport {
     pub stresslet: [[f64; 3]; 3],
     /// Its estimated error, absolute.
     pub stresslet_error_estimate: f64,
-    /// Rate of work that the surface does on the fluid; not for a case with `[test]`, whose tractions would cost more than its answer.
+    /// Rate of work that the surface does on the fluid; not for a case with `[test]`, whose
+    /// tractions would cost more than its answer.
     pub power: Option<f64>,
     /// Its estimated error, absolute; not known for one of many bodies with a slip.
     pub power_error_estimate: Option<f64>,
@@ -92,9 +95,11 @@ pub enum Stop {
     Direct,
     /// The residual is as small as it was to be.
     Converged,
-    /// The residual no longer fell, not far above what it was to be: the error estimate tells whether that was enough.
+    /// The residual no longer fell, not far above what it was to be: the error estimate tells
+    /// whether that was enough.
     Stagnated,
-    /// No more iterations were allowed, not far above what it was to be: the error estimate tells whether they were enough.
+    /// No more iterations were allowed, not far above what it was to be: the error estimate tells
+    /// whether they were enough.
     Exhausted,
 }
 
@@ -109,7 +114,8 @@ pub struct Timings {
     pub iterate: f64,
     /// Evaluating the flow at the probes.
     pub evaluate: f64,
-    /// Everything else: choosing the resolution, coarser solutions, and what the error is estimated from.
+    /// Everything else: choosing the resolution, coarser solutions, and what the error is estimated
+    /// from.
     pub estimate: f64,
 }
 
@@ -123,7 +129,8 @@ pub struct KnownFlowReport {
 }
 
 impl Report {
-    /// The name of the first number that is infinite or not a number: such a report must not be shown.
+    /// The name of the first number that is infinite or not a number: such a report must not be
+    /// shown.
     pub fn not_finite(&self) -> Option<String> {
         let finite = |v: &[f64; 3]| v.iter().all(|x| x.is_finite());
         for (i, body) in self.bodies.iter().enumerate() {

@@ -20,32 +20,37 @@ pub struct ResistanceReport {
     pub shapes: Vec<ShapeReport>,
 }
 
-/// Resistance and mobility of one shape about its origin, in the frame whose z axis is the symmetry axis.
+/// Resistance and mobility of one shape about its origin, in the frame whose z axis is the symmetry
+/// axis.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ShapeReport {
     /// Velocity and angular velocity to the force and torque exerted on the fluid, row by row.
     pub resistance: [[f64; 6]; 6],
     /// Force and torque to velocity and angular velocity, row by row.
     pub mobility: [[f64; 6]; 6],
-    /// Scalar functions of both for viscosity 1: `XA`, `YA`, `YB`, `XC`, `YC` of the resistance and `xa`, `ya`, `yb`, `xc`, `yc` of
-    /// the mobility; see [`ScalarFunctions`]; and those of strain, `XG`, `YG`, `YH`,
-    /// `XM`, `YM`, `ZM`, see [`stokes_body::strain`].
+    /// Scalar functions of both for viscosity 1: `XA`, `YA`, `YB`, `XC`, `YC` of the resistance and
+    /// `xa`, `ya`, `yb`, `xc`, `yc` of the mobility; see [`ScalarFunctions`]; and those of strain,
+    /// `XG`, `YG`, `YH`, `XM`, `YM`, `ZM`, see [`stokes_body::strain`].
     pub functions: BTreeMap<String, f64>,
-    /// Einstein's coefficient of a dilute suspension of free bodies in all directions, without Brownian motion: the
-    /// viscosity is that of the fluid times one plus this times the volume fraction.
+    /// Einstein's coefficient of a dilute suspension of free bodies in all directions, without
+    /// Brownian motion: the viscosity is that of the fluid times one plus this times the volume
+    /// fraction.
     pub intrinsic_viscosity: f64,
-    /// Bretherton's constant: how a free body turns in a strain, (r^2 - 1)/(r^2 + 1) for a spheroid of aspect ratio r.
+    /// Bretherton's constant: how a free body turns in a strain, (r^2 - 1)/(r^2 + 1) for a spheroid
+    /// of aspect ratio r.
     pub bretherton_constant: f64,
     /// The point about which rotation and translation do not couple.
     pub center_of_reaction: [f64; 3],
-    /// Estimated error of every entry (i, j) of the matrices relative to the root of the product of entries (i, i) and (j, j).
+    /// Estimated error of every entry (i, j) of the matrices relative to the root of the product of
+    /// entries (i, i) and (j, j).
     pub error_estimate: f64,
     /// The shape's name, and how it was discretised.
     #[serde(flatten)]
     pub discretization: Discretization,
 }
 
-/// The scalar functions as Kim & Karrila name them, `XA` for $X^A$, in the order of [`ScalarFunctions`].
+/// The scalar functions as Kim & Karrila name them, `XA` for $X^A$, in the order of
+/// [`ScalarFunctions`].
 const RESISTANCE_FUNCTIONS: [&str; 5] = ["XA", "YA", "YB", "XC", "YC"];
 const MOBILITY_FUNCTIONS: [&str; 5] = ["xa", "ya", "yb", "xc", "yc"];
 const STRAIN_FUNCTIONS: [&str; 6] = ["XG", "YG", "YH", "XM", "YM", "ZM"];
@@ -92,7 +97,8 @@ impl ResistanceReport {
         errors.fold(0.0, f64::max)
     }
 
-    /// The name of the first shape with a number that is infinite or not a number: such a report must not be shown.
+    /// The name of the first shape with a number that is infinite or not a number: such a report
+    /// must not be shown.
     pub fn not_finite(&self) -> Option<String> {
         let finite = |shape: &&ShapeReport| {
             let matrices = [shape.resistance, shape.mobility];

@@ -7,8 +7,8 @@ use std::fmt::{self, Write};
 /// The most bodies that the table shows one by one, unless told to show all.
 pub const FEW_BODIES: usize = 20;
 
-/// The report as aligned text; units are those of the case, made consistent by its viscosity. Of more than [`FEW_BODIES`] it shows what they have in
-/// common, or `all` of them.
+/// The report as aligned text; units are those of the case, made consistent by its viscosity. Of
+/// more than [`FEW_BODIES`] it shows what they have in common, or `all` of them.
 pub fn table(case: &Case, report: &Report, all: bool) -> String {
     let mut text = String::new();
     // writing to a string does not fail

@@ -1,4 +1,5 @@
-//! What is seen of a flow in a plane: its values and the sections of the bodies, to be drawn or written.
+//! What is seen of a flow in a plane: its values and the sections of the bodies, to be drawn or
+//! written.
 
 use nalgebra::Vector3;
 
@@ -13,7 +14,8 @@ use stokes_suspension::{Answer, Flow, Suspension, SuspensionError};
 pub struct View {
     /// Velocity and pressure at the grid points.
     pub flow: PlaneFlow,
-    /// Closed curves in the coordinates of the plane, with what an odd number of them goes around inside bodies.
+    /// Closed curves in the coordinates of the plane, with what an odd number of them goes around
+    /// inside bodies.
     pub sections: Vec<Vec<[f64; 2]>>,
 }
 

@@ -1,4 +1,5 @@
-//! The plane of a case: as `[plane]` asks, and where it leaves things open the plane in which most is to be seen.
+//! The plane of a case: as `[plane]` asks, and where it leaves things open the plane in which most
+//! is to be seen.
 
 use std::cmp::Ordering;
 
@@ -48,15 +49,17 @@ pub enum PlaneOrientation {
 }
 
 impl Plane {
-    /// The plane in which most of the flow around some bodies is to be seen, as far as the options leave it open.
+    /// The plane in which most of the flow around some bodies is to be seen, as far as the options
+    /// leave it open.
     ///
-    /// Of one body: through its centre; containing its symmetry axis and whatever acts across the axis, be it velocity,
-    /// force or undisturbed flow, or else orthogonal to what turns the body; square, 3.5 lengths wide, with 201 x 201
-    /// points. Upwards is z as far as possible, or else y.
+    /// Of one body: through its centre; containing its symmetry axis and whatever acts across the
+    /// axis, be it velocity, force or undisturbed flow, or else orthogonal to what turns the body;
+    /// square, 3.5 lengths wide, with 201 x 201 points. Upwards is z as far as possible, or else y.
     ///
-    /// Of many: containing the direction that most bodies are moved or pushed along, or the undisturbed flow, and from it
-    /// the longest extent of their centres; through the centre of all, moved across itself to the nearest centre of a
-    /// body; as large as all of them with a margin of the largest one's length.
+    /// Of many: containing the direction that most bodies are moved or pushed along, or the
+    /// undisturbed flow, and from it the longest extent of their centres; through the centre of
+    /// all, moved across itself to the nearest centre of a body; as large as all of them with a
+    /// margin of the largest one's length.
     pub fn of(suspension: &Suspension, options: &PlaneOptions) -> Self {
         let chosen = || match &suspension.bodies[..] {
             [body] => normal(suspension, body),
@@ -170,8 +173,8 @@ fn normal_of_many(suspension: &Suspension) -> Unit<Vector3<f64>> {
     flattest(suspension, first)
 }
 
-/// The direction, orthogonal to another if there is one, along which the centres are spread least; of directions that are as good, one that leaves
-/// z and x in the plane.
+/// The direction, orthogonal to another if there is one, along which the centres are spread least;
+/// of directions that are as good, one that leaves z and x in the plane.
 fn flattest(suspension: &Suspension, orthogonal: Option<Unit<Vector3<f64>>>) -> Unit<Vector3<f64>> {
     let centers: Vec<Vector3<f64>> = suspension
         .bodies
@@ -218,7 +221,8 @@ fn acting(body: &Body) -> [Vector3<f64>; 2] {
     }
 }
 
-/// Directions of the undisturbed flow: its velocity at the origin or, of a simple shear, flow and gradient.
+/// Directions of the undisturbed flow: its velocity at the origin or, of a simple shear, flow and
+/// gradient.
 fn background(suspension: &Suspension) -> Vec<Vector3<f64>> {
     let flow = &suspension.background;
     if flow.velocity != Vector3::zeros() {

@@ -9,7 +9,8 @@ use stokes_suspension::{Flow, SuspensionError};
 /// Relative accuracy of what is drawn.
 const TOLERANCE: f64 = 1e-6;
 
-/// A rectangle in space with a grid of points on it, corners included; lengths in the units of the case.
+/// A rectangle in space with a grid of points on it, corners included; lengths in the units of the
+/// case.
 ///
 /// Coordinates in the plane are `[across, up]`, counted from its middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,8 +92,9 @@ impl PlaneFlow {
         self
     }
 
-    /// A quantity at every grid point, continued into the bodies: each point there gets the mean of those of its neighbours that have
-    /// a value, layer by layer from outside. What is drawn is cut off at the surface; this is for interpolation beside it.
+    /// A quantity at every grid point, continued into the bodies: each point there gets the mean of
+    /// those of its neighbours that have a value, layer by layer from outside. What is drawn is cut
+    /// off at the surface; this is for interpolation beside it.
     ///
     /// None if no point has a value.
     pub fn continued<const N: usize>(
@@ -151,7 +153,8 @@ impl<const N: usize> Continued<N> {
         &self.values
     }
 
-    /// The value at coordinates in the plane, by bilinear interpolation; outside of the plane that of its nearest cell, continued.
+    /// The value at coordinates in the plane, by bilinear interpolation; outside of the plane that
+    /// of its nearest cell, continued.
     pub fn at(&self, point: [f64; 2]) -> [f64; N] {
         let plane = &self.plane;
         let spacing = plane.spacing();

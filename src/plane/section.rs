@@ -26,12 +26,13 @@ pub fn sections(flow: &Flow, plane: &Plane) -> Result<Vec<Vec<[f64; 2]>>, CurveE
     Ok(sections)
 }
 
-/// The closed curves, in the coordinates of the plane, in which it cuts the surface of a body; a point is inside the body if they go
-/// around it an odd number of times.
+/// The closed curves, in the coordinates of the plane, in which it cuts the surface of a body; a
+/// point is inside the body if they go around it an odd number of times.
 ///
-/// In the body's frame, turned about its axis, the plane is $a x + c z = d$. It meets the ring of the generating curve's point $(r, z)$ at
-/// the azimuths $\pm\theta$ with $\cos\theta = (d - c z)/a r$, if that is at most 1 in magnitude; stretches of the curve where it is give one closed
-/// curve each, and a whole loop two.
+/// In the body's frame, turned about its axis, the plane is $a x + c z = d$. It meets the ring of
+/// the generating curve's point $(r, z)$ at the azimuths $\pm\theta$ with $\cos\theta = (d - c z)/a
+/// r$, if that is at most 1 in magnitude; stretches of the curve where it is give one closed curve
+/// each, and a whole loop two.
 ///
 /// # Errors
 /// If a point of the curve is not finite.
@@ -127,7 +128,8 @@ fn pairs(values: impl Iterator<Item = f64>) -> Vec<[f64; 2]> {
     values.windows(2).map(|pair| [pair[0], pair[1]]).collect()
 }
 
-/// The zero between two parameters at which a function has different signs, by bisection to rounding.
+/// The zero between two parameters at which a function has different signs, by bisection to
+/// rounding.
 fn root(mut from: f64, mut to: f64, f: impl Fn(f64) -> f64) -> f64 {
     let positive = f(from) > 0.0;
     for _ in 0..80 {
@@ -194,7 +196,8 @@ mod tests {
                 let on = (x.x * x.x + x.y * x.y) / 0.25 + x.z * x.z;
                 assert!((on - 1.0).abs() < 1e-6, "{normal:?}: {on}");
             }
-            // The section of (x/a)^2 + (y/a)^2 + (z/b)^2 = 1 by n . x = d: area pi a^2 b (1 - d^2/m^2)/m, m^2 = a^2 (n_x^2 + n_y^2) + b^2 n_z^2.
+            // The section of (x/a)^2 + (y/a)^2 + (z/b)^2 = 1 by n . x = d: area pi a^2 b (1 -
+            // d^2/m^2)/m, m^2 = a^2 (n_x^2 + n_y^2) + b^2 n_z^2.
             let n = frame.vector_to_body(plane.normal());
             let d = frame.point_to_body(plane.center).coords.dot(&n);
             let m2 = 0.25 * (n.x * n.x + n.y * n.y) + n.z * n.z;

@@ -1,7 +1,8 @@
 //! Evenly spaced streamlines.
 //!
-//! After Jobard and Lefer, *Creating evenly-spaced streamlines of arbitrary density*, Visualization in Scientific Computing '97: a
-//! streamline is followed both ways until it comes too near to another one; new ones start at a given distance beside those there are.
+//! After Jobard and Lefer, *Creating evenly-spaced streamlines of arbitrary density*, Visualization
+//! in Scientific Computing '97: a streamline is followed both ways until it comes too near to
+//! another one; new ones start at a given distance beside those there are.
 
 use std::collections::VecDeque;
 
@@ -13,7 +14,8 @@ const NEAREST: f64 = 0.5;
 const SHORTEST: f64 = 2.0;
 /// How far the direction may turn within a step: this is its cosine.
 const LEAST_COSINE: f64 = 0.9;
-/// How often a step is halved where the direction turns faster; a line that needs more ends, at a stagnation point.
+/// How often a step is halved where the direction turns faster; a line that needs more ends, at a
+/// stagnation point.
 const HALVINGS: usize = 5;
 /// Most steps of a streamline in either direction.
 const MOST_STEPS: usize = 4000;
@@ -29,7 +31,8 @@ pub struct Streamline {
 
 /// Streamlines of a flow in the rectangle of a size around the origin, about `separation` apart.
 ///
-/// `direction` is the direction of the flow, a unit vector, and `None` where there is no flow: streamlines end there, and at the edges.
+/// `direction` is the direction of the flow, a unit vector, and `None` where there is no flow:
+/// streamlines end there, and at the edges.
 pub fn evenly_spaced(
     direction: impl Fn([f64; 2]) -> Option<[f64; 2]>,
     size: [f64; 2],
@@ -67,7 +70,8 @@ struct Drawing<F> {
 }
 
 impl<F: Fn([f64; 2]) -> Option<[f64; 2]>> Drawing<F> {
-    /// Draws the streamline through a point, if it is far enough from the others and gets long enough.
+    /// Draws the streamline through a point, if it is far enough from the others and gets long
+    /// enough.
     fn start(&mut self, start: [f64; 2]) -> bool {
         if !self.contains(start) || self.near.any_within(start, 0.99 * self.separation) {
             return false;
@@ -144,8 +148,8 @@ impl<F: Fn([f64; 2]) -> Option<[f64; 2]>> Drawing<F> {
         (points, false)
     }
 
-    /// One step of the classical Runge–Kutta method along the unit directions, in halves where they turn fast; `None` if it leads to where
-    /// there is no flow.
+    /// One step of the classical Runge–Kutta method along the unit directions, in halves where
+    /// they turn fast; `None` if it leads to where there is no flow.
     fn step(&self, [x, y]: [f64; 2], h: f64, halvings: usize) -> Option<[f64; 2]> {
         let at = |t: f64, [u, v]: [f64; 2]| (self.direction)([x + t * u, y + t * v]);
         let a = (self.direction)([x, y])?;
@@ -226,7 +230,8 @@ mod tests {
         (speed > 1e-9).then(|| [u / speed, v / speed])
     }
 
-    /// No point nearer to another line than allowed, and no point of the rectangle far from all lines.
+    /// No point nearer to another line than allowed, and no point of the rectangle far from all
+    /// lines.
     fn check_spacing(lines: &[Streamline], size: [f64; 2], separation: f64) {
         for (k, line) in lines.iter().enumerate() {
             for other in lines[k + 1..].iter().flat_map(|line| &line.points) {

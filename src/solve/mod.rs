@@ -1,4 +1,5 @@
-//! From a case to its answer: a case file is read, asked as a [`Suspension`](crate::Suspension), and reported.
+//! From a case to its answer: a case file is read, asked as a [`Suspension`](crate::Suspension),
+//! and reported.
 
 mod explain;
 mod question;
@@ -17,7 +18,8 @@ use stokes_suspension::{Answer, Options, SolveError as Unsolved, Solver, Suspens
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SolveError {
-    /// The case is at fault: its geometry, what it would take, or a part of the format that is not built.
+    /// The case is at fault: its geometry, what it would take, or a part of the format that is not
+    /// built.
     #[error(transparent)]
     Case(#[from] CaseError),
     /// Cancelled by the caller.
@@ -46,8 +48,8 @@ pub struct Solved {
 /// The report is returned even when its error estimate exceeds the tolerance: the caller compares.
 ///
 /// # Errors
-/// [`SolveError::Case`] if the case asks for the impossible or for what is not built, [`SolveError::Interrupted`] if
-/// `progress` says so.
+/// [`SolveError::Case`] if the case asks for the impossible or for what is not built,
+/// [`SolveError::Interrupted`] if `progress` says so.
 pub fn solve(case: &Case, progress: &dyn Progress) -> Result<Solved, SolveError> {
     case.check_supported()?;
     let question = Question::new(case)?;

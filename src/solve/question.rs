@@ -20,7 +20,8 @@ pub(super) struct Question {
 }
 
 impl Question {
-    /// Builds the shapes and checks that the probes are outside of all bodies and the Stokeslets inside of some.
+    /// Builds the shapes and checks that the probes are outside of all bodies and the Stokeslets
+    /// inside of some.
     pub fn new(case: &Case) -> Result<Self, CaseError> {
         let mut shapes: BTreeMap<&str, Shape> = BTreeMap::new();
         let mut bodies = Vec::with_capacity(case.bodies.len());

@@ -1,4 +1,5 @@
-//! The bodies of a case in their places, and the parts of its report that do not depend on how it is solved.
+//! The bodies of a case in their places, and the parts of its report that do not depend on how it
+//! is solved.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -47,7 +48,8 @@ pub(super) struct Found {
 }
 
 impl<'a> Setting<'a> {
-    /// Builds the curves and checks that the probes are outside of all bodies and the Stokeslets inside of some.
+    /// Builds the curves and checks that the probes are outside of all bodies and the Stokeslets
+    /// inside of some.
     pub fn new(case: &'a Case) -> Result<Self, CaseError> {
         let mut curves: BTreeMap<&str, Arc<dyn GeneratingCurve>> = BTreeMap::new();
         let mut bodies = Vec::with_capacity(case.bodies.len());

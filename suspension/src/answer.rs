@@ -21,11 +21,11 @@ pub struct BodyAnswer {
     pub motion: RigidMotion,
     /// Force and torque that the body exerts on the fluid.
     pub wrench: Wrench,
-    /// The stresslet: symmetric, without trace; its sign is Batchelor's (1970), that of the first moment of the traction
-    /// on the body, see [`stokes_body::stresslet`].
+    /// The stresslet: symmetric, without trace; its sign is Batchelor's (1970), that of the first
+    /// moment of the traction on the body, see [`stokes_body::stresslet`].
     pub stresslet: Matrix3<f64>,
-    /// By how much the velocity is off on its surface, at most; not known of a body alone, whose whole solution is
-    /// compared with a finer one.
+    /// By how much the velocity is off on its surface, at most; not known of a body alone, whose
+    /// whole solution is compared with a finer one.
     pub boundary_error: Option<f64>,
     /// The resolution it was computed with.
     pub resolution: Resolution,
@@ -52,16 +52,18 @@ pub struct Answer {
     /// On finer surfaces, if that was needed to tell the error.
     pub(crate) finer: Option<Finer>,
     /// Estimated error: of velocities at the probes, and of the motions of many bodies, relative to
-    /// [`largest_speed`](Self::largest_speed); of forces, and torques over sizes, relative to the largest of them; of
-    /// the motion of a body alone relative to itself.
+    /// [`largest_speed`](Self::largest_speed); of forces, and torques over sizes, relative to the
+    /// largest of them; of the motion of a body alone relative to itself.
     ///
-    /// Forces and motions may vanish by symmetry: below a hundredth of $6\pi$ times size and largest speed (for viscosity
-    /// 1), and below a hundredth of the largest speed, they count relative to that.
+    /// Forces and motions may vanish by symmetry: below a hundredth of $6\pi$ times size and
+    /// largest speed (for viscosity 1), and below a hundredth of the largest speed, they count
+    /// relative to that.
     ///
-    /// A body alone is solved for twice, on finer panels with more modes, too: the estimate is twice the difference, and
-    /// what rounding leaves. For many bodies it is twice the largest velocity by which the boundary condition is missed
-    /// on finer surfaces; where gaps are narrow small velocities go with large tractions, and then the equations are
-    /// solved on those surfaces, too, and it is no less than three times the difference.
+    /// A body alone is solved for twice, on finer panels with more modes, too: the estimate is
+    /// twice the difference, and what rounding leaves. For many bodies it is twice the largest
+    /// velocity by which the boundary condition is missed on finer surfaces; where gaps are narrow
+    /// small velocities go with large tractions, and then the equations are solved on those
+    /// surfaces, too, and it is no less than three times the difference.
     pub error_estimate: f64,
     /// What the estimate was to be below, unless panels and modes were chosen by hand.
     pub tolerance: Option<f64>,
@@ -126,7 +128,8 @@ impl Answer {
         self.bodies.iter().map(|body| body.motion)
     }
 
-    /// The surface of a body as points, with velocity, traction and pressure there; in the laboratory.
+    /// The surface of a body as points, with velocity, traction and pressure there; in the
+    /// laboratory.
     ///
     /// # Errors
     /// If there is no such body, or a quadrature rule is missing.

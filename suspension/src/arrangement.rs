@@ -1,7 +1,8 @@
 //! How bodies lie: the gaps between them, and the axes that are chosen for spheres.
 //!
-//! A sphere looks the same from all sides, so the axis of its modes may point anywhere. It is aligned with the nearest
-//! neighbour: then the traction that gathers in the gap is around the axis, where panels and a few modes resolve it.
+//! A sphere looks the same from all sides, so the axis of its modes may point anywhere. It is
+//! aligned with the nearest neighbour: then the traction that gathers in the gap is around the
+//! axis, where panels and a few modes resolve it.
 
 use nalgebra::{Unit, Vector3};
 
@@ -12,7 +13,8 @@ use super::suspension::Body;
 
 /// Relative differences of radii, and of directions, that are rounding.
 const ROUNDING: f64 = 1e-14;
-/// The sine of the angle up to which the nearest point is on the line of centres: it is known no better.
+/// The sine of the angle up to which the nearest point is on the line of centres: it is known no
+/// better.
 const ON_LINE: f64 = 1e-6;
 
 /// The sine of the angle between axes and lines of centres up to which bodies are coaxial.
@@ -22,7 +24,8 @@ pub(crate) const REACH: f64 = 1.0;
 /// Gaps below so many sizes of the smaller body are narrow.
 const NARROW: f64 = 0.2;
 
-/// The gaps between bodies that are no farther apart than `reach` sizes; an error if any are not apart.
+/// The gaps between bodies that are no farther apart than `reach` sizes; an error if any are not
+/// apart.
 pub(crate) fn gaps_within(bodies: &[Body], reach: f64) -> Result<Vec<Gap>, SuspensionError> {
     let placed: Vec<Placed<'_>> = (bodies.iter())
         .map(|body| Placed {
@@ -55,7 +58,8 @@ pub(crate) fn are_coaxial(bodies: &[Body]) -> bool {
     })
 }
 
-/// The bodies with the axes of spheres towards the nearest neighbour; those with a slip stay, for it is given in their frame.
+/// The bodies with the axes of spheres towards the nearest neighbour; those with a slip stay, for
+/// it is given in their frame.
 pub(crate) fn facing_neighbours(bodies: &[Body], gaps: &[Gap]) -> Vec<Body> {
     let mut facing = bodies.to_vec();
     if are_coaxial(bodies) {

@@ -140,7 +140,8 @@ impl Assembly {
         self.finer.take().map(|finer| *finer)
     }
 
-    /// Keeps the system on the surfaces of the check if there is more than one right-hand side, or one body only.
+    /// Keeps the system on the surfaces of the check if there is more than one right-hand side, or
+    /// one body only.
     pub fn keep_finer(&mut self, finer: Self) {
         if self.solved > 1 || self.coupling.is_none() {
             self.finer = Some(Box::new(finer));
@@ -182,7 +183,8 @@ impl Assembly {
         Ok(Some(misses))
     }
 
-    /// Solves, from an earlier solution if there is one; the bodies must be in the places that this was made for.
+    /// Solves, from an earlier solution if there is one; the bodies must be in the places that this
+    /// was made for.
     pub fn solve(
         &mut self,
         suspension: &Suspension,
@@ -353,8 +355,8 @@ impl Assembly {
         }
     }
 
-    /// What is imposed, less what the single layers of free bodies do; and the same as far as constraints let it act,
-    /// with what their loads add.
+    /// What is imposed, less what the single layers of free bodies do; and the same as far as
+    /// constraints let it act, with what their loads add.
     fn right_hand_side(
         &mut self,
         bodies: &[Body],
@@ -489,8 +491,8 @@ fn members(bodies: &[Body], tables: impl Fn(usize) -> Arc<Tables>) -> Vec<Member
 }
 
 impl Solution {
-    /// Adds a body's part: its density, that of its force and torque if it is free, and its motion if a constraint
-    /// let it be found.
+    /// Adds a body's part: its density, that of its force and torque if it is free, and its motion
+    /// if a constraint let it be found.
     fn push(
         &mut self,
         class: &Class,

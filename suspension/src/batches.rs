@@ -61,8 +61,8 @@ impl Batches {
         classes.map(move |batches| (&*batches[0].tables, alike(batches)))
     }
 
-    /// Applies to the columns of each mode of each body, in place, a matrix of its tables: `operator` is given a body that has those tables, the mode, the
-    /// columns, and room.
+    /// Applies to the columns of each mode of each body, in place, a matrix of its tables:
+    /// `operator` is given a body that has those tables, the mode, the columns, and room.
     pub fn apply(
         &self,
         layout: &Layout,

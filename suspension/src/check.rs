@@ -1,9 +1,10 @@
 //! By how much a solution misses the velocity on the bodies, between the nodes.
 //!
-//! The layers are put on [finer surfaces](super::finer): four more nodes on each panel, more modes, and therefore other
-//! quadrature for everything. There the velocity that they make is compared with the one that was imposed. The
-//! difference is the boundary velocity of the error, which solves the Stokes equations too: all that went wrong is in
-//! it, be it resolution, quadrature, summation or iteration.
+//! The layers are put on [finer surfaces](super::finer): four more nodes on each panel, more modes,
+//! and therefore other quadrature for everything. There the velocity that they make is compared
+//! with the one that was imposed. The difference is the boundary velocity of the error, which
+//! solves the Stokes equations too: all that went wrong is in it, be it resolution, quadrature,
+//! summation or iteration.
 
 use std::sync::Arc;
 
@@ -60,8 +61,8 @@ pub(crate) struct Checker {
     interactions: [Option<Interactions>; Part::ALL.len()],
 }
 
-/// The last mode of a class on its finer surface. With one axis for all and no slip, the modes of rigid motions and
-/// linear flows are all there are.
+/// The last mode of a class on its finer surface. With one axis for all and no slip, the modes of
+/// rigid motions and linear flows are all there are.
 fn last_mode(bodies: &[Body], modes: usize) -> usize {
     if are_coaxial(bodies) && bodies.iter().all(|body| body.slip.is_none()) {
         modes

@@ -1,4 +1,5 @@
-//! Classes of bodies that are alike in shape, resolution and equation. What it takes to solve for one is made once.
+//! Classes of bodies that are alike in shape, resolution and equation. What it takes to solve for
+//! one is made once.
 
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;

@@ -1,15 +1,18 @@
 //! The second level of the preconditioner: rigid motions.
 //!
-//! What a held body does to the others far away is the flow of the force and torque that it takes to hold it, and no body can know that by itself. So the
-//! rigid motions $c$ of all held bodies are solved for together: a boundary velocity $f_i$ stands for the rigid motion $\Psi_i f_i$ that takes the same
-//! force and torque, and motion $c_j$ of body $j$ alone makes body $i$ feel $\Psi_i u_j$. With
+//! What a held body does to the others far away is the flow of the force and torque that it takes
+//! to hold it, and no body can know that by itself. So the rigid motions $c$ of all held bodies are
+//! solved for together: a boundary velocity $f_i$ stands for the rigid motion $\Psi_i f_i$ that
+//! takes the same force and torque, and motion $c_j$ of body $j$ alone makes body $i$ feel $\Psi_i
+//! u_j$. With
 //!
 //! $$ G = 1 + (\Psi_i u_j)_{i \ne j}, \qquad f \mapsto f + E\\,(G^{-1} - 1)\\,\Psi f, $$
 //!
-//! where $E$ takes motions to boundary velocities, that part of the interactions is done with. By the reciprocal theorem
-//! $\Psi_i f = R_i^{-1} \int \tau_k \cdot f\\, d\Gamma$, with the tractions $\tau_k$ of the six rigid motions and the resistance $R_i$, and the same
-//! tractions are the single layers that make $u_j$: so $G = 1 + R^{-1} K$ with a symmetric $K$, which a few points on each body give
-//! well enough.
+//! where $E$ takes motions to boundary velocities, that part of the interactions is done with. By
+//! the reciprocal theorem $\Psi_i f = R_i^{-1} \int \tau_k \cdot f\\, d\Gamma$, with the tractions
+//! $\tau_k$ of the six rigid motions and the resistance $R_i$, and the same tractions are the
+//! single layers that make $u_j$: so $G = 1 + R^{-1} K$ with a symmetric $K$, which a few points on
+//! each body give well enough.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -37,12 +40,14 @@ const AZIMUTHS: usize = 6;
 /// The six rigid motions of a shape, in its frame.
 #[derive(Debug)]
 pub(crate) struct RigidTractions {
-    /// Points on the surface and, motion by motion, the force of the traction on the point's share of it.
+    /// Points on the surface and, motion by motion, the force of the traction on the point's share
+    /// of it.
     points: Vec<Vector3<f64>>,
     forces: Vec<SixForces>,
     /// $R^{-1}$.
     mobility: Matrix6<f64>,
-    /// $E$ and, with the same numbers, the functionals $\int \tau_k \cdot f$: scaled modes 0 and 1, motion by motion.
+    /// $E$ and, with the same numbers, the functionals $\int \tau_k \cdot f$: scaled modes 0 and 1,
+    /// motion by motion.
     motions: Vec<Vec<f64>>,
     functionals: Vec<Vec<f64>>,
 }
@@ -163,7 +168,8 @@ pub(crate) struct Coarse {
     permutation: Permutation,
 }
 
-/// Points and forces of a body in the laboratory: coordinates, then the components of each motion's forces; padded by points without force.
+/// Points and forces of a body in the laboratory: coordinates, then the components of each motion's
+/// forces; padded by points without force.
 struct InLab {
     position: [Vec<f64>; 3],
     forces: Vec<[Vec<f64>; 3]>,
@@ -199,8 +205,8 @@ impl InLab {
 }
 
 impl Coarse {
-    /// Factors $G$ for bodies with tractions; those without are free. A body that is free in some directions feels the
-    /// others through its projection $\Pi$, which on motions is $1 - HR$.
+    /// Factors $G$ for bodies with tractions; those without are free. A body that is free in some
+    /// directions feels the others through its projection $\Pi$, which on motions is $1 - HR$.
     pub fn new(
         members: &[Member],
         tractions: Vec<Option<Arc<RigidTractions>>>,
@@ -219,7 +225,8 @@ impl Coarse {
             .map(|(body, tractions)| InLab::new(&members[*body], tractions))
             .collect();
         let size = 6 * bodies.len();
-        // Row after row, which is the transposed matrix column after column; a body's six rows are one task.
+        // Row after row, which is the transposed matrix column after column; a body's six rows are
+        // one task.
         let mut rows = vec![0.0; size * size];
         rows.par_chunks_mut(6 * size)
             .enumerate()

@@ -1,14 +1,15 @@
 //! Bodies that are held in some directions and free in the others.
 //!
-//! Such a body has the equation of a held one, $A_{ii}\sigma_i = y_i$, with unknown velocities $a$ in its free directions
-//! $N$ and given forces $\varphi$ there. Let $E$ take rigid motions to boundary velocities, $L$ boundary velocities $g$ to
-//! force and torque of $A_{ii}^{-1} g$, and $R = LE$ be the resistance. From
+//! Such a body has the equation of a held one, $A_{ii}\sigma_i = y_i$, with unknown velocities $a$
+//! in its free directions $N$ and given forces $\varphi$ there. Let $E$ take rigid motions to
+//! boundary velocities, $L$ boundary velocities $g$ to force and torque of $A_{ii}^{-1} g$, and $R
+//! = LE$ be the resistance. From
 //!
 //! $$ y_i = d_i - \sum_{j \ne i} u_j + E N a, \qquad N^\mathsf{T} L\\, y_i = \varphi $$
 //!
-//! follows $a = (N^\mathsf{T} R N)^{-1} (\varphi - N^\mathsf{T} L (d_i - \sum u_j))$: what others do to the body, and what is imposed
-//! on it, acts through the projection $\Pi = 1 - E H L$ with $H = N (N^\mathsf{T} R N)^{-1} N^\mathsf{T}$, which takes away the forces in
-//! the free directions.
+//! follows $a = (N^\mathsf{T} R N)^{-1} (\varphi - N^\mathsf{T} L (d_i - \sum u_j))$: what others
+//! do to the body, and what is imposed on it, acts through the projection $\Pi = 1 - E H L$ with $H
+//! = N (N^\mathsf{T} R N)^{-1} N^\mathsf{T}$, which takes away the forces in the free directions.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -21,7 +22,8 @@ use stokes_body::surface::SurfaceModes;
 
 use super::motion::Mixed;
 
-/// The rigid motions of a shape as boundary velocities, and what they take; in its frame. Fields are scaled modes 0 and 1.
+/// The rigid motions of a shape as boundary velocities, and what they take; in its frame. Fields
+/// are scaled modes 0 and 1.
 #[derive(Debug)]
 pub(crate) struct RigidResponse {
     /// $E$, motion by motion.
@@ -134,7 +136,8 @@ impl Constraint {
             .map(|&motion| six_of_motion(frame.motion_to_body(motion)))
             .collect();
         let free = DMatrix::from_fn(6, columns.len(), |i, j| columns[j][i]);
-        // A rate of work in the laboratory is the scale times that of the numbers in the body's frame.
+        // A rate of work in the laboratory is the scale times that of the numbers in the body's
+        // frame.
         let loads = directions.iter().map(|&motion| {
             let direction = six_of_motion(motion);
             load.dot(&direction) / frame.scale()
@@ -176,7 +179,8 @@ impl Constraint {
         self.response.add(&self.pushed, field);
     }
 
-    /// The whole motion, in the body's frame, of a body on which this is imposed, less what others do.
+    /// The whole motion, in the body's frame, of a body on which this is imposed, less what others
+    /// do.
     pub fn motion(&self, imposed: &[f64]) -> RigidMotion {
         let found = self.pushed - self.yielding * self.response.wrench(imposed);
         self.given + motion_of(&found)

@@ -1,8 +1,9 @@
 //! The estimated error of a solution.
 //!
-//! Two means: by how much the solution [misses](super::check) the boundary velocity on finer surfaces, and by how much
-//! it differs from a second solution on those surfaces. For many bodies the first is cheap and tells all but where gaps
-//! are narrow. For a body alone the second costs as much as a check would, and tells more.
+//! Two means: by how much the solution [misses](super::check) the boundary velocity on finer
+//! surfaces, and by how much it differs from a second solution on those surfaces. For many bodies
+//! the first is cheap and tells all but where gaps are narrow. For a body alone the second costs as
+//! much as a check would, and tells more.
 
 use std::f64::consts::PI;
 
@@ -18,10 +19,11 @@ use super::suspension::Suspension;
 const SAFETY: f64 = 2.0;
 /// What is left to rounding.
 const ROUNDING: f64 = 1e-14;
-/// Forces below this part of what the largest speed would make them, and motions below this part of the largest speed,
-/// count as if they were that large.
+/// Forces below this part of what the largest speed would make them, and motions below this part of
+/// the largest speed, count as if they were that large.
 const SMALL: f64 = 1e-2;
-/// How far the estimate stays above the difference of two solutions for many bodies: the finer one has an error too.
+/// How far the estimate stays above the difference of two solutions for many bodies: the finer one
+/// has an error too.
 pub(crate) const COMPARED: f64 = 3.0;
 
 /// The largest speed on the surfaces, of what is imposed and of motions that were found.
@@ -65,7 +67,8 @@ pub(crate) fn from_misses(
         return 0.0;
     }
     let velocities = worst / speed;
-    // A boundary velocity takes 6 pi size times itself to hold back, more or less; free bodies have no such force.
+    // A boundary velocity takes 6 pi size times itself to hold back, more or less; free bodies have
+    // no such force.
     let mut force = 0.0f64;
     for (i, body) in suspension.bodies.iter().enumerate() {
         if body.motion.is_held() {
@@ -77,8 +80,8 @@ pub(crate) fn from_misses(
     SAFETY * velocities.max(forces) + ROUNDING
 }
 
-/// The estimate from the difference of two solutions, the second on finer surfaces, and of their velocities at the
-/// probes.
+/// The estimate from the difference of two solutions, the second on finer surfaces, and of their
+/// velocities at the probes.
 pub(crate) fn from_comparison(
     suspension: &Suspension,
     [solution, finer]: [&Solution; 2],
@@ -122,7 +125,8 @@ fn relative(difference: f64, scale: f64) -> f64 {
     }
 }
 
-/// The largest force or torque over size on a held body, or a part of what the largest speed would make it.
+/// The largest force or torque over size on a held body, or a part of what the largest speed would
+/// make it.
 fn force_scale(suspension: &Suspension, solution: &Solution, speed: f64) -> f64 {
     let mut scale = 0.0f64;
     for (i, body) in suspension.bodies.iter().enumerate() {

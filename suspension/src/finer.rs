@@ -1,4 +1,5 @@
-//! A class of bodies on a finer surface, where the error of a solution shows: four more nodes on each panel, more modes.
+//! A class of bodies on a finer surface, where the error of a solution shows: four more nodes on
+//! each panel, more modes.
 
 use std::sync::{Arc, OnceLock};
 

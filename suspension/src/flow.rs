@@ -1,7 +1,8 @@
 //! The flow that was solved for, at any points, and its stress on the surfaces.
 //!
-//! The layers of all bodies are laid on points and summed, and what the points get wrong near a body is put right. For
-//! few points, and for a body alone, every body's flow is evaluated by itself instead: that loses no digits.
+//! The layers of all bodies are laid on points and summed, and what the points get wrong near a
+//! body is put right. For few points, and for a body alone, every body's flow is evaluated by
+//! itself instead: that loses no digits.
 
 use std::sync::{Arc, OnceLock};
 
@@ -72,8 +73,8 @@ pub struct StressAt {
 
 /// One body's surface as points with what acts there, in the laboratory.
 ///
-/// The sum of weights times a field is its integral over the surface: of the traction, minus the force that the body
-/// exerts on the fluid.
+/// The sum of weights times a field is its integral over the surface: of the traction, minus the
+/// force that the body exerts on the fluid.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surface {
     /// The points.
@@ -90,7 +91,8 @@ pub struct Surface {
     pub pressure: Vec<f64>,
 }
 
-/// The whole flow in the laboratory: the undisturbed flow, and what the layers of all bodies add to it.
+/// The whole flow in the laboratory: the undisturbed flow, and what the layers of all bodies add to
+/// it.
 ///
 /// A clone shares everything with its original, also what was made at an earlier evaluation.
 #[derive(Clone, Debug)]
@@ -110,8 +112,8 @@ struct Inner {
     stresses: Vec<OnceLock<SurfaceStress>>,
 }
 
-/// What a fast sum is asked for beyond the tolerance of the flow: its own is relative to the whole, and terms may
-/// cancel.
+/// What a fast sum is asked for beyond the tolerance of the flow: its own is relative to the whole,
+/// and terms may cancel.
 const MARGIN: f64 = 1e-2;
 /// The best tolerance of a fast sum.
 const FINEST_SUM: f64 = 1e-12;
@@ -121,7 +123,8 @@ const FINEST: f64 = 1e-15;
 const CHUNK: usize = 1 << 16;
 /// Bodies whose tractions are found together.
 const BODIES: usize = 64;
-/// Half steps between the points of a ring and those at which the others' stress is sampled: as far from them as can be.
+/// Half steps between the points of a ring and those at which the others' stress is sampled: as far
+/// from them as can be.
 const HALVES: usize = 1;
 
 /// What a flow is made of.
@@ -172,8 +175,8 @@ impl Flow {
         self.0.largest_speed
     }
 
-    /// Velocity and pressure at any points, `None` inside a body; on a surface, the limits from outside. As well as the
-    /// tolerance of the answer makes sense.
+    /// Velocity and pressure at any points, `None` inside a body; on a surface, the limits from
+    /// outside. As well as the tolerance of the answer makes sense.
     ///
     /// # Errors
     /// If a point is not finite.
@@ -181,8 +184,8 @@ impl Flow {
         self.at_with(points, self.0.tolerance, &Silent)
     }
 
-    /// The same to a tolerance for the velocity, relative to the [largest speed](Self::largest_speed); tells `progress`
-    /// where it is.
+    /// The same to a tolerance for the velocity, relative to the [largest
+    /// speed](Self::largest_speed); tells `progress` where it is.
     ///
     /// # Errors
     /// If a point is not finite, or the caller cancels.
@@ -272,7 +275,8 @@ impl Flow {
         Ok(inner.insides.get_or_init(|| insides))
     }
 
-    /// Velocity, pressure and, if asked for, gradient at points that are all in the fluid; for viscosity 1.
+    /// Velocity, pressure and, if asked for, gradient at points that are all in the fluid; for
+    /// viscosity 1.
     pub(crate) fn evaluate<const GRADIENT: bool>(
         &self,
         targets: &[Point3<f64>],
@@ -532,8 +536,9 @@ impl Flow {
         Ok(())
     }
 
-    /// Traction and pressure of the fluid on the surfaces of some bodies, background included, with the normal out of
-    /// the body: per area of the laboratory, as vectors in the body's frame. What was found once is kept.
+    /// Traction and pressure of the fluid on the surfaces of some bodies, background included, with
+    /// the normal out of the body: per area of the laboratory, as vectors in the body's frame. What
+    /// was found once is kept.
     ///
     /// # Errors
     /// If a quadrature rule is missing, or the caller cancels.
@@ -615,7 +620,8 @@ impl Flow {
         stresses.collect()
     }
 
-    /// The flow of all bodies but the one that a target is on; for viscosity 1, without the undisturbed flow.
+    /// The flow of all bodies but the one that a target is on; for viscosity 1, without the
+    /// undisturbed flow.
     fn of_others(
         &self,
         targets: &[Point3<f64>],
@@ -673,10 +679,12 @@ impl Flow {
         Ok(surface)
     }
 
-    /// The rate of work $-\int u \cdot \sigma\nu\\, d\Gamma$ that every body's surface does on the fluid; of a swimmer its
-    /// slip included. In a fluid at rest far away, the sum is the dissipation.
+    /// The rate of work $-\int u \cdot \sigma\nu\\, d\Gamma$ that every body's surface does on the
+    /// fluid; of a swimmer its slip included. In a fluid at rest far away, the sum is the
+    /// dissipation.
     ///
-    /// In the rigid motion it is $F \cdot U + T \cdot \Omega$; the traction is needed for the slip's part only.
+    /// In the rigid motion it is $F \cdot U + T \cdot \Omega$; the traction is needed for the
+    /// slip's part only.
     ///
     /// # Errors
     /// If a quadrature rule is missing, or the caller cancels.
@@ -736,7 +744,8 @@ impl BodyFlow {
     }
 }
 
-/// Points on rings of so many, ring after ring, between those of the densities; in the body's frame.
+/// Points on rings of so many, ring after ring, between those of the densities; in the body's
+/// frame.
 fn ring_points(discretization: &Discretization, azimuths: usize) -> Vec<Point3<f64>> {
     let nodes = discretization.nodes();
     let mut points = Vec::with_capacity(nodes.len() * azimuths);

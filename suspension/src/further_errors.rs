@@ -1,14 +1,18 @@
-//! Estimated errors of pressures, stresslets and powers, which [`Answer::error_estimate`] does not cover.
+//! Estimated errors of pressures, stresslets and powers, which [`Answer::error_estimate`] does not
+//! cover.
 //!
-//! Of a body alone they are the differences from the finer solution that its error was estimated with. Of many bodies
-//! they are bounds from the velocity by which the boundary condition is missed: the error of a flow is a flow too, with
-//! a boundary velocity $w$ of at most [`boundary_error`](super::answer::BodyAnswer::boundary_error). By the reciprocal
-//! theorem $w$ changes a moment of the traction by the integral of $w \cdot t$ with the traction $t$ of another flow. For
-//! a sphere of radius $a$ in the rate of strain $E$ that is $t = 5 E\nu$, so that the stresslet is off by at most
-//! $\frac{20}{\sqrt 3}\pi a^2 \max|w|$; in a translation $t$ is $\frac{3}{2a}U$, in a rotation $3\, \Omega \times \nu$. Other
-//! bodies are taken for spheres of their size. The pressure over a plane wall with the velocity $w$ is at most
-//! $\frac{8}{3\sqrt 3}\max|w|/d$ at the distance $d$, or $2 k \max|w|$ if nothing on it is shorter than $1/k$. In narrow gaps
-//! there is a solution on finer surfaces to compare with, and no estimate is less than three times the difference.
+//! Of a body alone they are the differences from the finer solution that its error was estimated
+//! with. Of many bodies they are bounds from the velocity by which the boundary condition is
+//! missed: the error of a flow is a flow too, with a boundary velocity $w$ of at most
+//! [`boundary_error`](super::answer::BodyAnswer::boundary_error). By the reciprocal theorem $w$
+//! changes a moment of the traction by the integral of $w \cdot t$ with the traction $t$ of another
+//! flow. For a sphere of radius $a$ in the rate of strain $E$ that is $t = 5 E\nu$, so that the
+//! stresslet is off by at most $\frac{20}{\sqrt 3}\pi a^2 \max|w|$; in a translation $t$ is
+//! $\frac{3}{2a}U$, in a rotation $3\, \Omega \times \nu$. Other bodies are taken for spheres of
+//! their size. The pressure over a plane wall with the velocity $w$ is at most $\frac{8}{3\sqrt
+//! 3}\max|w|/d$ at the distance $d$, or $2 k \max|w|$ if nothing on it is shorter than $1/k$. In
+//! narrow gaps there is a solution on finer surfaces to compare with, and no estimate is less than
+//! three times the difference.
 
 use std::f64::consts::PI;
 
@@ -46,7 +50,8 @@ impl Answer {
         Ok((SAFETY * bound).max(COMPARED * apart))
     }
 
-    /// The estimated absolute errors of [`Flow::powers`](super::flow::Flow::powers); not known for one of many bodies with a slip.
+    /// The estimated absolute errors of [`Flow::powers`](super::flow::Flow::powers); not known for
+    /// one of many bodies with a slip.
     ///
     /// # Errors
     /// If a quadrature rule is missing, or the caller cancels.
@@ -87,7 +92,8 @@ impl Answer {
         (SAFETY * bound).max(COMPARED * apart)
     }
 
-    /// The largest estimated absolute error of the pressures at the probes, which are at these points.
+    /// The largest estimated absolute error of the pressures at the probes, which are at these
+    /// points.
     pub fn pressure_error(&self, probes: &[Point3<f64>]) -> f64 {
         let (mut apart, mut largest) = (0.0f64, 0.0f64);
         let finer = self.finer.iter().flat_map(|finer| &finer.probes);
@@ -107,7 +113,8 @@ impl Answer {
         (SAFETY * self.flow.viscosity() * bound).max(COMPARED * apart)
     }
 
-    /// The pressure, for viscosity 1, that the error of a body's boundary velocity makes at a point.
+    /// The pressure, for viscosity 1, that the error of a body's boundary velocity makes at a
+    /// point.
     fn pressure_bound(&self, body: usize, point: &Point3<f64>) -> f64 {
         let of_body = &self.flow.bodies()[body];
         let (discretization, scale) = (of_body.disturbance.discretization(), of_body.frame.scale());
@@ -133,7 +140,8 @@ impl Answer {
         Err(SuspensionError::NoBody { body, bodies })
     }
 
-    /// The error of a number about as large as `scale`, of a body alone whose finer solution differs by so much.
+    /// The error of a number about as large as `scale`, of a body alone whose finer solution
+    /// differs by so much.
     fn absolute_error(&self, difference: f64, scale: f64) -> f64 {
         let on = self.flow.bodies()[0].disturbance.discretization();
         scale * error_estimate(on, difference / scale.max(f64::MIN_POSITIVE))

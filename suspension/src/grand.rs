@@ -1,13 +1,15 @@
 //! Grand resistance and mobility matrices: of all bodies together.
 //!
-//! For a cluster of $n$ bodies in a fluid at rest the forces and torques that the bodies exert on the fluid, and their
-//! velocities and angular velocities, all about the bodies' centres and in the laboratory, are joined by matrices of
-//! $6n \times 6n$ (Kim & Karrila 1991, chapter 5),
+//! For a cluster of $n$ bodies in a fluid at rest the forces and torques that the bodies exert on
+//! the fluid, and their velocities and angular velocities, all about the bodies' centres and in the
+//! laboratory, are joined by matrices of $6n \times 6n$ (Kim & Karrila 1991, chapter 5),
 //!
-//! $$ (F_1, T_1, F_2, T_2, \dots) = R\\, (U_1, \Omega_1, U_2, \Omega_2, \dots), \qquad M = R^{-1} . $$
+//! $$ (F_1, T_1, F_2, T_2, \dots) = R\\, (U_1, \Omega_1, U_2, \Omega_2, \dots),
+//! \qquad M = R^{-1} . $$
 //!
-//! Both are symmetric and positive definite. They come from different integral equations, one for held bodies and one
-//! for free ones, column by column: symmetry, and that they are inverse to each other, are checks and not imposed.
+//! Both are symmetric and positive definite. They come from different integral equations, one for
+//! held bodies and one for free ones, column by column: symmetry, and that they are inverse to each
+//! other, are checks and not imposed.
 
 use bodies_of_revolution::{RigidMotion, Wrench};
 use nalgebra::{DMatrix, Vector3};
@@ -20,15 +22,16 @@ use super::motion::Motion;
 use super::solver::Solver;
 use super::suspension::Suspension;
 
-/// A matrix of all bodies: row and column $6i + k$ belong to component $k$ (three linear, three angular) of body $i$.
+/// A matrix of all bodies: row and column $6i + k$ belong to component $k$ (three linear, three
+/// angular) of body $i$.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct GrandMatrix {
     /// The matrix, for the viscosity of the question.
     pub matrix: DMatrix<f64>,
-    /// The largest of the columns' estimated errors: of the column's forces relative to the largest of them (a force times
-    /// its body's size, half its largest extent, counting as torque), or of its velocities likewise. Compare it with
-    /// the tolerance.
+    /// The largest of the columns' estimated errors: of the column's forces relative to the largest
+    /// of them (a force times its body's size, half its largest extent, counting as torque), or of
+    /// its velocities likewise. Compare it with the tolerance.
     pub error_estimate: f64,
 }
 
@@ -74,6 +77,7 @@ impl Solver {
         found: impl Fn(&BodyAnswer) -> [Vector3<f64>; 2],
         progress: &dyn Progress,
     ) -> Result<GrandMatrix, SuspensionError> {
+        suspension.check()?;
         let still = elementary([Vector3::zeros(); 2]);
         let mut cluster = Suspension {
             probes: Vec::new(),

@@ -18,12 +18,14 @@ pub(crate) struct Imposed {
     pub slip: Option<SurfaceModes>,
     /// The density of a free body's single layer.
     pub single: Option<SurfaceModes>,
-    /// The largest speed of motion and slip together, or of the background; infinite if one is not finite.
+    /// The largest speed of motion and slip together, or of the background; infinite if one is not
+    /// finite.
     pub largest: f64,
 }
 
 impl Imposed {
-    /// Modes up to `n_max`, slips sampled for `oversampling` times as many; `free` is the shell of a free body.
+    /// Modes up to `n_max`, slips sampled for `oversampling` times as many; `free` is the shell of
+    /// a free body.
     pub fn new(
         body: &Body,
         background: &LinearFlow,

@@ -1,7 +1,8 @@
 //! What the bodies do to each other: the velocity of the layers of all other bodies on each.
 //!
-//! All points together go through one [fast sum](stokes_fmm). What it counts of a body's own points is taken away by the shape's
-//! point sums (`body::point_sums`), and points that are near another body (`near`) are put right.
+//! All points together go through one [fast sum](stokes_fmm). What it counts of a body's own points
+//! is taken away by the shape's point sums (`body::point_sums`), and points that are near another
+//! body (`near`) are put right.
 
 use std::time::Instant;
 
@@ -139,8 +140,9 @@ impl Interactions {
         &self.near
     }
 
-    /// Adds to the modes in `velocities` what the `densities` of all other bodies do; both are scaled by the roots of the weights. The error is about
-    /// `tolerance` relative to all velocities that the densities make, in the Euclidean norm.
+    /// Adds to the modes in `velocities` what the `densities` of all other bodies do; both are
+    /// scaled by the roots of the weights. The error is about `tolerance` relative to all
+    /// velocities that the densities make, in the Euclidean norm.
     ///
     /// # Errors
     /// If a density is not finite.
@@ -241,8 +243,9 @@ impl Interactions {
         self.layers.stokeslets = stokeslets;
     }
 
-    /// The velocities at all points, of the points of all other bodies. Of what neighbours on a body do to each other a sum has fewer digits
-    /// the nearer they are: here it is not made at all.
+    /// The velocities at all points, of the points of all other bodies. Of what neighbours on a
+    /// body do to each other a sum has fewer digits the nearer they are: here it is not made at
+    /// all.
     fn sum_over_others(&self) -> Result<Vec<[f64; 3]>, FmmError> {
         let mut velocity = Vec::with_capacity(self.points.len());
         for body in 0..self.members.len() {
@@ -265,7 +268,8 @@ impl Interactions {
         Ok(velocity)
     }
 
-    /// Puts the densities on the points: in the bodies' frames, and as singularities in the laboratory.
+    /// Puts the densities on the points: in the bodies' frames, and as singularities in the
+    /// laboratory.
     fn spread(&mut self, densities: &[f64]) {
         let (members, fields, near) = (&self.members, &self.fields, &self.near);
         let count = members.len();

@@ -1,15 +1,19 @@
-//! Stokes flow around many bodies of revolution, one included: the question, the solver and its answer.
+//! Stokes flow around many bodies of revolution, one included: the question, the solver and its
+//! answer.
 //!
-//! A [`Suspension`] says where bodies are and what is known of their motions, a [`Solver`] answers it with an estimate of
-//! the error, and the [`Answer`] gives forces, motions and the flow at any points. On body $i$
+//! A [`Suspension`] says where bodies are and what is known of their motions, a [`Solver`] answers
+//! it with an estimate of the error, and the [`Answer`] gives forces, motions and the flow at any
+//! points. On body $i$
 //!
-//! $$ \bigl(\tfrac12 + D_i + \eta_i S_i\bigr)\\, \sigma_i + \sum_{j \ne i} u_j = U_i + \Omega_i \times x + u_{s,i} - u_\infty \quad \text{(held)}, $$
-//! $$ \bigl(\tfrac12 + D_i + P_i\bigr)\\, \sigma_i + S_i[\varrho_i] + \sum_{j \ne i} u_j = u_{s,i} - u_\infty \quad \text{(free)}, $$
+//! $$ \bigl(\tfrac12 + D_i + \eta_i S_i\bigr)\\, \sigma_i + \sum_{j \ne i} u_j
+//! = U_i + \Omega_i \times x + u_{s,i} - u_\infty \quad \text{(held)}, $$
+//! $$ \bigl(\tfrac12 + D_i + P_i\bigr)\\, \sigma_i + S_i[\varrho_i]
+//! {} + \sum_{j \ne i} u_j = u_{s,i} - u_\infty \quad \text{(free)}, $$
 //!
-//! where $u_j$ is the flow of body $j$'s layers: $(D_j + \eta_j S_j)\sigma_j$, or $D_j\sigma_j + S_j\varrho_j$ with the
-//! density $\varrho_j$ of its force and torque (see [`stokes_body::mobility`]). A body that is held in some directions and
-//! free in others has the first equation with unknown velocities. A body alone is solved for directly, many by
-//! iteration.
+//! where $u_j$ is the flow of body $j$'s layers: $(D_j + \eta_j S_j)\sigma_j$, or $D_j\sigma_j +
+//! S_j\varrho_j$ with the density $\varrho_j$ of its force and torque (see
+//! [`stokes_body::mobility`]). A body that is held in some directions and free in others has the
+//! first equation with unknown velocities. A body alone is solved for directly, many by iteration.
 //!
 //! | module | what |
 //! |---|---|
@@ -17,10 +21,10 @@
 //! | [`options`], [`solver`] | how it is answered |
 //! | [`answer`], [`flow`], `further_errors` | the answer |
 //! | [`grand`] | grand resistance and mobility matrices |
-//! | `arrangement`, `resolution`, `refine`, `estimate` | from a tolerance to resolutions, and the error |
+//! | `arrangement`, `resolution`, `refine`, `estimate` | resolutions, and the error |
 //! | `class`, `tables`, `finer` | what belongs to a shape at a resolution |
-//! | `assembly`, `system`, `coarse`, `constraint`, `iteration`, `solution` | the linear system of bodies in their places |
-//! | `interactions`, `points`, `sums`, `near`, `upsampling`, `batches`, `layout` | one product with it |
+//! | `assembly`, `system`, `coarse`, `constraint`, `iteration`, `solution` | the linear system |
+//! | `interactions`, `points`, `sums`, `near`, `upsampling`, `batches`, `layout` | one product |
 //! | `check` | by how much a solution misses the boundary velocity |
 
 pub mod answer;

@@ -8,11 +8,13 @@ use super::error::SuspensionError;
 use super::options::Options;
 use inexact_krylov::Method;
 
-/// Matrices in memory, in matrices of one kind: factors and point sums; and where all that depends on
-/// shapes is kept also point sums of single layers and, with more nodes and modes, all those of the check.
+/// Matrices in memory, in matrices of one kind: factors and point sums; and where all that depends
+/// on shapes is kept also point sums of single layers and, with more nodes and modes, all those of
+/// the check.
 const MATRICES: f64 = 2.5;
 const MATRICES_KEPT: f64 = 12.0;
-/// Bytes that a fast sum takes for each point of a finer surface, by each point of the surface itself.
+/// Bytes that a fast sum takes for each point of a finer surface, by each point of the surface
+/// itself.
 const SUM_BYTES: usize = 4000;
 /// Vectors that an iteration keeps as a rule: room for so many there always is.
 pub(crate) const VECTORS: usize = 25;
@@ -42,8 +44,9 @@ pub(crate) fn check(
     })
 }
 
-/// Bytes that solving takes beside the rows of near points: factors and point sums of each kind and of its finer surface, and for
-/// every point what the fast sum and the vectors of the iteration take.
+/// Bytes that solving takes beside the rows of near points: factors and point sums of each kind and
+/// of its finer surface, and for every point what the fast sum and the vectors of the iteration
+/// take.
 pub(crate) fn needed_memory(kinds: &[Kind], keep: Keep, options: &Options) -> usize {
     let mut distinct: Vec<&Kind> = Vec::new();
     let mut points = 0;

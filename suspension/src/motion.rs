@@ -8,8 +8,8 @@ use nalgebra::{UnitQuaternion, Vector3};
 pub enum Motion {
     /// The motion itself: the body is *held*. Force and torque are wanted.
     Given(RigidMotion),
-    /// Force and torque exerted on the body from outside, which it hands on to the fluid: the body is *free*. Its
-    /// motion is wanted.
+    /// Force and torque exerted on the body from outside, which it hands on to the fluid: the body
+    /// is *free*. Its motion is wanted.
     Free(Wrench),
     /// Some components of the motion, and of force and torque the others.
     Mixed(Mixed),
@@ -18,13 +18,15 @@ pub enum Motion {
 /// One component of a body's motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Component {
-    /// The velocity (or angular velocity) in this direction is given; what holds the body there is wanted.
+    /// The velocity (or angular velocity) in this direction is given; what holds the body there is
+    /// wanted.
     Imposed(f64),
     /// The body may move in this direction, under this force (or torque) from outside.
     Free(f64),
 }
 
-/// A body held in some directions and free in the others: pinned but free to turn, on a line, in a plane.
+/// A body held in some directions and free in the others: pinned but free to turn, on a line, in a
+/// plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mixed {
     /// The three components of velocity or force, then those of angular velocity or torque.
@@ -34,7 +36,8 @@ pub struct Mixed {
 }
 
 impl Motion {
-    /// These components along the laboratory's axes: three of velocity or force, three of angular velocity or torque.
+    /// These components along the laboratory's axes: three of velocity or force, three of angular
+    /// velocity or torque.
     pub fn components(components: [Component; 6]) -> Self {
         Self::components_along(components, UnitQuaternion::identity())
     }

@@ -1,7 +1,9 @@
-//! Points of one body that are near another: where the sum over points does not resolve what some panels do.
+//! Points of one body that are near another: where the sum over points does not resolve what some
+//! panels do.
 //!
-//! There a sum over [more points](super::upsampling) takes the place of the panels' points or, nearer still, the panels' exact action. That is a linear
-//! map of the density: its rows are kept where memory allows, and made anew each time where it does not.
+//! There a sum over [more points](super::upsampling) takes the place of the panels' points or,
+//! nearer still, the panels' exact action. That is a linear map of the density: its rows are kept
+//! where memory allows, and made anew each time where it does not.
 
 use std::sync::Arc;
 
@@ -21,8 +23,8 @@ use stokes_body::surface_grid::PointVectors;
 pub(crate) struct Visit {
     /// The other body.
     source: usize,
-    /// Ring after ring about the other body's axis, the points on it: their numbers among those of their own body, and where they are in the frame of the
-    /// other body.
+    /// Ring after ring about the other body's axis, the points on it: their numbers among those of
+    /// their own body, and where they are in the frame of the other body.
     points: Vec<(usize, Point3<f64>)>,
     rings: Vec<NearRing>,
     /// The panels of all rings that are done exactly.
@@ -33,7 +35,8 @@ pub(crate) struct Visit {
     rows: Option<Vec<f64>>,
 }
 
-/// Points at one radius and height about the other body's axis: they have the same rows. Bodies on one axis have hardly anything else.
+/// Points at one radius and height about the other body's axis: they have the same rows. Bodies on
+/// one axis have hardly anything else.
 #[derive(Clone, Copy, Debug)]
 struct NearRing {
     /// How many of the points are on it, and how many of the panels of both kinds are its own.
@@ -70,7 +73,8 @@ struct Room {
 }
 
 impl Near {
-    /// Finds what the points do not resolve to `tolerance`, and makes the rows as far as they fit into `memory` bytes.
+    /// Finds what the points do not resolve to `tolerance`, and makes the rows as far as they fit
+    /// into `memory` bytes.
     ///
     /// # Errors
     /// If a quadrature rule is missing.
@@ -142,8 +146,9 @@ impl Near {
         }
     }
 
-    /// Adds, to the velocities of a body's points in the laboratory (`velocity(point)`), what is exact less what the points of the panels do:
-    /// `field` and `strengths` are the densities of all bodies, as modes and at their points.
+    /// Adds, to the velocities of a body's points in the laboratory (`velocity(point)`), what is
+    /// exact less what the points of the panels do: `field` and `strengths` are the densities of
+    /// all bodies, as modes and at their points.
     pub fn correct<'f>(
         &self,
         members: &[Member],

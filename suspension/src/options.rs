@@ -10,8 +10,9 @@ use stokes_body::resolution::Resolution;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Accuracy {
-    /// The largest estimated error, as [`Answer::error_estimate`](super::answer::Answer::error_estimate) counts it,
-    /// from 1e-14 to less than 1. Panels and modes are chosen.
+    /// The largest estimated error, as
+    /// [`Answer::error_estimate`](super::answer::Answer::error_estimate) counts it, from 1e-14 to
+    /// less than 1. Panels and modes are chosen.
     Tolerance(f64),
     /// The same panels and modes for all bodies.
     Uniform {
@@ -69,9 +70,11 @@ pub struct Options {
     pub max_iterations: usize,
     /// Relative residual at which an iteration ends; if not given, what the tolerance needs.
     pub residual: Option<f64>,
-    /// Levels of the preconditioner: each body by itself, and the rigid motions of all held bodies together.
+    /// Levels of the preconditioner: each body by itself, and the rigid motions of all held bodies
+    /// together.
     pub levels: Levels,
-    /// How inexact products may become as the residual falls, relative to their results; 0 keeps them exact.
+    /// How inexact products may become as the residual falls, relative to their results; 0 keeps
+    /// them exact.
     pub loosest_product: f64,
     /// Bytes that everything together may take; if not given, seven tenths of what the
     /// machine has (feature `machine-memory`) or of 8 GiB.

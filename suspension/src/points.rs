@@ -16,11 +16,12 @@ pub(crate) struct LayerPoints {
     pub singularities: Singularities,
 }
 
-/// The strengths at a point in the laboratory, from the densities of single and double layer times the point's share
-/// of the surface, all in the body's frame.
+/// The strengths at a point in the laboratory, from the densities of single and double layer times
+/// the point's share of the surface, all in the body's frame.
 ///
-/// Shares of the surface grow with the square of the scale, and a single layer's density with the inverse of the scale.
-/// This is the place where the sign is turned: a stresslet of the sum is minus our double layer.
+/// Shares of the surface grow with the square of the scale, and a single layer's density with the
+/// inverse of the scale. This is the place where the sign is turned: a stresslet of the sum is
+/// minus our double layer.
 pub(crate) fn strengths_in_lab(
     frame: &Frame,
     single: Vector3<f64>,

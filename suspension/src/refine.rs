@@ -25,11 +25,13 @@ use super::sums::Operators;
 use super::suspension::Suspension;
 use super::tolerances::Tolerances;
 
-/// Solutions, each finer than the one before, and how many in a row may gain less than a factor of two.
+/// Solutions, each finer than the one before, and how many in a row may gain less than a factor of
+/// two.
 const ROUNDS: usize = 10;
 const ROUNDS_ALONE: usize = 24;
 const PATIENCE: usize = 2;
-/// What finer resolutions aim at, in tolerances: next time the estimate is to be below it, and not about it.
+/// What finer resolutions aim at, in tolerances: next time the estimate is to be below it, and not
+/// about it.
 const AIM: f64 = 0.4;
 /// Estimates that miss the tolerance by less may do so for other reasons than the resolution.
 const NEARLY: f64 = 10.0;
@@ -39,8 +41,8 @@ const BLAMED: f64 = 2.0;
 const FINER: f64 = 0.1;
 /// How often more may be asked of them.
 const TIGHTENED: usize = 3;
-/// An iteration that stagnates or is cut short at so many times its residual is still worth an answer: the estimate
-/// tells how much.
+/// An iteration that stagnates or is cut short at so many times its residual is still worth an
+/// answer: the estimate tells how much.
 const STALLED: f64 = 100.0;
 
 /// What all rounds of one question share.
@@ -142,8 +144,8 @@ impl Rounds<'_> {
         Assembly::new(&self.suspension.bodies, kinds, &setup, self.progress)
     }
 
-    /// Finer and finer solutions until the estimated error is below what is wanted or no longer falls. An `assembly`
-    /// for these kinds may have been made before.
+    /// Finer and finer solutions until the estimated error is below what is wanted or no longer
+    /// falls. An `assembly` for these kinds may have been made before.
     pub fn converge(
         &self,
         mut kinds: Vec<Kind>,
@@ -226,7 +228,8 @@ impl Rounds<'_> {
         })
     }
 
-    /// One solution and its estimated error. Below `compared_below`, a solution on finer surfaces tells it, too.
+    /// One solution and its estimated error. Below `compared_below`, a solution on finer surfaces
+    /// tells it, too.
     fn round(
         &self,
         assembly: &mut Assembly,
@@ -275,11 +278,11 @@ impl Rounds<'_> {
         })
     }
 
-    /// The solution on the surfaces of the check, if memory does for it, iterated until little is left of a velocity that
-    /// was off by `worst`.
+    /// The solution on the surfaces of the check, if memory does for it, iterated until little is
+    /// left of a velocity that was off by `worst`.
     ///
-    /// Where gaps are narrow, the tractions that go with small velocities are large: by how much forces are off no
-    /// velocity tells.
+    /// Where gaps are narrow, the tractions that go with small velocities are large: by how much
+    /// forces are off no velocity tells.
     fn on_finer_surfaces(
         &self,
         assembly: &mut Assembly,
@@ -316,7 +319,8 @@ impl Rounds<'_> {
         let start = Start::new(bodies, solution);
         let mut found = finer.solve(self.suspension, Some(&start), self.options, self.progress)?;
         for _ in 0..TIGHTENED {
-            // Residuals are small in the mean: in a gap, where panels are short, they may be all that was off.
+            // Residuals are small in the mean: in a gap, where panels are short, they may be all
+            // that was off.
             let left = found.residual_speeds.iter().copied().fold(0.0, f64::max);
             if left <= FINER * worst || found.iteration.stop != Stop::Converged {
                 break;
@@ -403,7 +407,8 @@ fn allowed(round: &Round, misses: &[Miss], tolerance: f64) -> f64 {
     AIM * worst * tolerance / round.error_estimate
 }
 
-/// The target of sums and iteration for the next round: what is left near the end may be theirs, too.
+/// The target of sums and iteration for the next round: what is left near the end may be theirs,
+/// too.
 fn tightened(mut target: f64, round: &Round, allowed: f64, tolerance: f64) -> f64 {
     let missed = round.error_estimate / tolerance;
     if missed < NEARLY {

@@ -1,8 +1,9 @@
 //! How finely each body is cut, before and after what is known of its error.
 //!
-//! Two bodies that face each other over a gap $d$ see each other's images gather at a distance of $\delta = d/2 + \sqrt{d a + d^2/4}$ from the surface, for
-//! a radius $a$ (the poles of bispherical coordinates): what panels and modes have to resolve there. Modes and panels are chosen from a short list,
-//! so that alike bodies stay alike and share their factors.
+//! Two bodies that face each other over a gap $d$ see each other's images gather at a distance of
+//! $\delta = d/2 + \sqrt{d a + d^2/4}$ from the surface, for a radius $a$ (the poles of bispherical
+//! coordinates): what panels and modes have to resolve there. Modes and panels are chosen from a
+//! short list, so that alike bodies stay alike and share their factors.
 
 use std::sync::Arc;
 
@@ -23,7 +24,8 @@ use stokes_body::refinement::{ORDER, first_panels};
 use stokes_body::resolution::Resolution;
 use stokes_body::surface::SurfaceModes;
 
-/// What of the digits modes and panels have to resolve in a gap: images are weaker the nearer they are.
+/// What of the digits modes and panels have to resolve in a gap: images are weaker the nearer they
+/// are.
 const GAP_DIGITS: f64 = 0.75;
 /// Bisections of one panel at first.
 const DEEPEST: usize = 12;
@@ -177,7 +179,8 @@ fn graded(
     facing: &[Facing],
     tolerance: f64,
 ) -> Panels {
-    // The Bernstein ellipse through a point at distance x from the middle of a panel of half length 1 has sinh(log rho) = x.
+    // The Bernstein ellipse through a point at distance x from the middle of a panel of half length
+    // 1 has sinh(log rho) = x.
     let needed = (-GAP_DIGITS * tolerance.ln() / ORDER as f64).sinh();
     for _ in 0..DEEPEST {
         let marked: Vec<bool> = panels
@@ -204,7 +207,8 @@ fn graded(
     panels.graded_across_joints(curve)
 }
 
-/// Finer resolutions where a boundary velocity is off by more than is `allowed` on a body; bodies that are alike in kind stay so if both are refined.
+/// Finer resolutions where a boundary velocity is off by more than is `allowed` on a body; bodies
+/// that are alike in kind stay so if both are refined.
 pub(crate) fn refined(
     kinds: &[Kind],
     misses: &[Miss],
@@ -337,7 +341,8 @@ mod tests {
 
     #[test]
     fn what_is_missing_is_refined() {
-        // A panel that stands out; modes that are missing, which all panels feel; both; nothing but a little of that; nothing.
+        // A panel that stands out; modes that are missing, which all panels feel; both; nothing but
+        // a little of that; nothing.
         assert_eq!(refined_of([1e-3, 1e-6, 1e-6, 1e-6], 1e-9, 1e-5), (5, 8));
         assert_eq!(refined_of([3e-3, 2e-3, 3e-3, 1e-3], 1e-3, 1e-5), (4, 12));
         assert_eq!(refined_of([3e-2, 2e-3, 3e-3, 1e-3], 1e-3, 1e-5), (5, 12));

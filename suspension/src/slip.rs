@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-/// A velocity of the surface relative to the body's rigid motion, as a function of the point on it: both in the body's
-/// own frame, where lengths are the shape's. It turns with the body.
+/// A velocity of the surface relative to the body's rigid motion, as a function of the point on it:
+/// both in the body's own frame, where lengths are the shape's. It turns with the body.
 #[derive(Clone)]
 pub struct Slip(Arc<dyn Fn(Vector3<f64>) -> Vector3<f64> + Send + Sync>);
 
@@ -21,12 +21,15 @@ impl Slip {
         (self.0)(x)
     }
 
-    /// Squirming modes of a sphere about the origin (Lighthill 1952, Blake 1971): the tangential velocity
+    /// Squirming modes of a sphere about the origin (Lighthill 1952, Blake 1971): the tangential
+    /// velocity
     ///
-    /// $$ u_\theta = \sum_{n \ge 1} b_n V_n(\cos\theta), \qquad V_n = \frac{2}{n(n+1)} \sin\theta\\, P_n'(\cos\theta), $$
+    /// $$ u_\theta = \sum_{n \ge 1} b_n V_n(\cos\theta),
+    /// \qquad V_n = \frac{2}{n(n+1)} \sin\theta\\, P_n'(\cos\theta), $$
     ///
-    /// where $e_\theta$ points away from the upper pole and `b` holds $b_1, b_2, \dots$ in units of velocity. Alone in a
-    /// fluid at rest the sphere swims with $\frac23 b_1 e_z$; $b_2 > 0$ makes a puller, $b_2 < 0$ a pusher.
+    /// where $e_\theta$ points away from the upper pole and `b` holds $b_1, b_2, \dots$ in units of
+    /// velocity. Alone in a fluid at rest the sphere swims with $\frac23 b_1 e_z$; $b_2 > 0$ makes
+    /// a puller, $b_2 < 0$ a pusher.
     pub fn squirmer(b: impl Into<Vec<f64>>) -> Self {
         let b = b.into();
         Self::new(move |x| {
@@ -50,8 +53,9 @@ impl Slip {
     }
 
     /// Slip from the upper pole of a spheroid about the origin to its lower one (Keller & Wu 1977):
-    /// $u_s = -v\\, (s \cdot e_z)\\, s$ with the meridian's unit tangent $s$, so that the `speed` $v$ is reached at the
-    /// equator. On a sphere this is the first squirming mode, $b_1 = v$. For $v > 0$ the spheroid swims up its axis.
+    /// $u_s = -v\\, (s \cdot e_z)\\, s$ with the meridian's unit tangent $s$, so that the `speed`
+    /// $v$ is reached at the equator. On a sphere this is the first squirming mode, $b_1 = v$. For
+    /// $v > 0$ the spheroid swims up its axis.
     pub fn pole_to_pole(polar: f64, equatorial: f64, speed: f64) -> Self {
         // The components, scaled so that their squares neither overflow nor vanish.
         let [across, along] = [polar / equatorial, equatorial / polar];

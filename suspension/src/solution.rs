@@ -113,11 +113,12 @@ impl Start {
             .all(|body| (0..body.unknown.modes()).all(|n| body.unknown.amplitude(n) == 0.0))
     }
 
-    /// The unknowns for bodies in other places and at other resolutions; zero for those that have no start,
-    /// none if there is nothing to start from.
+    /// The unknowns for bodies in other places and at other resolutions; zero for those that have
+    /// no start, none if there is nothing to start from.
     ///
-    /// An unknown is kept in its body's frame: it moves and turns with the body. The axis of a sphere without slip is
-    /// chosen anew for each configuration; where it is a very different one, the unknown is turned to it.
+    /// An unknown is kept in its body's frame: it moves and turns with the body. The axis of a
+    /// sphere without slip is chosen anew for each configuration; where it is a very different one,
+    /// the unknown is turned to it.
     pub fn unknowns(
         &self,
         bodies: &[Body],

@@ -7,8 +7,8 @@ use super::error::SuspensionError;
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SolveError {
-    /// The estimated error of the best answer that was found misses the tolerance. The answer is inside:
-    /// [`SolveError::answer`] takes it out.
+    /// The estimated error of the best answer that was found misses the tolerance. The answer is
+    /// inside: [`SolveError::answer`] takes it out.
     #[error(
         "the error estimate {:.3e} misses the tolerance {tolerance:e} by a factor of {:.3}",
         answer.error_estimate,

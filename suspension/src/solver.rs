@@ -32,9 +32,10 @@ const COARSEST: f64 = 1e-2;
 
 /// Answers questions about bodies, and keeps what serves the next one.
 ///
-/// What belongs to a shape at a resolution (matrices, factors, tables) and the operators of fast sums are made once, as
-/// long as memory does for it. A question about bodies in the same places with other loads needs new right-hand sides
-/// only. An earlier answer, where bodies were in other places, starts the iteration for the next.
+/// What belongs to a shape at a resolution (matrices, factors, tables) and the operators of fast
+/// sums are made once, as long as memory does for it. A question about bodies in the same places
+/// with other loads needs new right-hand sides only. An earlier answer, where bodies were in other
+/// places, starts the iteration for the next.
 ///
 /// Two spheres of radius 1 sink one above the other, 3 apart, faster than one alone:
 ///
@@ -85,15 +86,15 @@ impl Solver {
     /// Answers a question.
     ///
     /// # Errors
-    /// [`SolveError::Missed`], with the best answer inside, if the estimated error misses the tolerance; otherwise why
-    /// there is no answer.
+    /// [`SolveError::Missed`], with the best answer inside, if the estimated error misses the
+    /// tolerance; otherwise why there is no answer.
     pub fn solve(&mut self, suspension: &Suspension) -> Result<Answer, SolveError> {
         self.solve_with(suspension, None, &Silent)
     }
 
-    /// The same, beginning with an earlier answer: its resolutions are the first, and its densities, moved and turned
-    /// with their bodies, start the iteration. Bodies are told apart by their place among the bodies; those of another
-    /// shape than then begin anew.
+    /// The same, beginning with an earlier answer: its resolutions are the first, and its
+    /// densities, moved and turned with their bodies, start the iteration. Bodies are told apart by
+    /// their place among the bodies; those of another shape than then begin anew.
     ///
     /// # Errors
     /// As [`solve`](Self::solve).
@@ -105,7 +106,8 @@ impl Solver {
         self.solve_with(suspension, Some(earlier), &Silent)
     }
 
-    /// The same, from an earlier answer if there is one; tells `progress` where it is and asks it whether to go on.
+    /// The same, from an earlier answer if there is one; tells `progress` where it is and asks it
+    /// whether to go on.
     ///
     /// # Errors
     /// As [`solve`](Self::solve); [`SuspensionError::Interrupted`] if the caller cancels.
@@ -207,7 +209,8 @@ impl Solver {
                 ..
             } => self.by_hand(kinds(&uniform(bodies, [panels, order, modes])?)),
             &Accuracy::Tolerance(tolerance) => {
-                // Where memory does not do for the tolerance, the best that it does for: the estimate will tell.
+                // Where memory does not do for the tolerance, the best that it does for: the
+                // estimate will tell.
                 let mut looser = tolerance;
                 loop {
                     let mut kinds = kinds(&first(suspension, gaps, looser)?);
@@ -244,7 +247,8 @@ impl Solver {
         kinds.map(kind).collect()
     }
 
-    /// Keeps classes for the next question: those of this one, and of earlier ones as far as memory does for them.
+    /// Keeps classes for the next question: those of this one, and of earlier ones as far as memory
+    /// does for them.
     fn remember(&mut self, used: &[Arc<Class>]) {
         let is_used = |class: &Arc<Class>| used.iter().any(|other| Arc::ptr_eq(class, other));
         self.classes.retain(|class| !is_used(class));
@@ -260,14 +264,17 @@ impl Solver {
 
 /// An answer, or that it missed its tolerance.
 fn wanted(answer: Answer) -> Result<Answer, SolveError> {
-    match answer.tolerance {
-        // An estimate that is not a number misses, too.
-        Some(tolerance) if !(answer.error_estimate <= tolerance) => Err(SolveError::Missed {
-            answer: Box::new(answer),
-            tolerance,
-        }),
-        _ => Ok(answer),
+    let Some(tolerance) = answer.tolerance else {
+        return Ok(answer);
+    };
+    if answer.error_estimate <= tolerance {
+        return Ok(answer);
     }
+    // An estimate that is not a number comes here, too.
+    Err(SolveError::Missed {
+        answer: Box::new(answer),
+        tolerance,
+    })
 }
 
 /// Bodies that had been solved for begin with the resolutions they had then.

@@ -5,7 +5,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use stokes_fmm::{Flow, FmmError, Output, Points, Singularities, StokesSum, Strengths};
 
-/// The least tolerance of a fast sum, and the largest that is worth having: beyond it sums become no cheaper.
+/// The least tolerance of a fast sum, and the largest that is worth having: beyond it sums become
+/// no cheaper.
 const TOLERANCES: [f64; 2] = [1e-12, 1e-3];
 /// Tolerances are taken in steps of this factor, so that plans last.
 const STEP: f64 = 100.0;
@@ -61,8 +62,8 @@ impl Operators {
 
 /// Whether so few sources and targets are summed pair by pair: the one place where that is decided.
 ///
-/// Pair by pair, what belongs to one body can be left out or done exactly. A fast sum counts all, and what is wrong
-/// of it is taken away: that costs digits where points are near each other.
+/// Pair by pair, what belongs to one body can be left out or done exactly. A fast sum counts all,
+/// and what is wrong of it is taken away: that costs digits where points are near each other.
 pub(crate) fn are_few(sources: usize, targets: usize) -> bool {
     sources as f64 * targets as f64 <= FEW
 }
@@ -103,7 +104,8 @@ impl Sums {
         self.planned = None;
     }
 
-    /// The flow of `strengths` at the targets to a tolerance, or somewhat better. The points must be the same each time.
+    /// The flow of `strengths` at the targets to a tolerance, or somewhat better. The points must
+    /// be the same each time.
     pub fn apply(
         &mut self,
         points: Points<'_>,

@@ -1,7 +1,8 @@
 //! The question: bodies in their places, what is known of their motions, and the undisturbed flow.
 //!
-//! Every body has a motion that is given (it is *held*), or a force and torque on it (it is *free*), or some components
-//! of each; and perhaps a slip. All are in one undisturbed flow. Everything is in the laboratory.
+//! Every body has a motion that is given (it is *held*), or a force and torque on it (it is
+//! *free*), or some components of each; and perhaps a slip. All are in one undisturbed flow.
+//! Everything is in the laboratory.
 
 use bodies_of_revolution::{Frame, RigidMotion, Shape, Wrench};
 use nalgebra::{Point3, Unit, UnitQuaternion, Vector3};
@@ -14,11 +15,13 @@ use super::slip::Slip;
 /// A body: its shape, where it is, and what is known of its motion.
 #[derive(Clone, Debug)]
 pub struct Body {
-    /// The shape. Bodies that share it share all that depends on the shape alone, whatever their scale.
+    /// The shape. Bodies that share it share all that depends on the shape alone, whatever their
+    /// scale.
     pub shape: Shape,
     /// Where the body is, how it is turned, and how large it is.
     pub frame: Frame,
-    /// Its motion about its centre, or force and torque about its centre that are exerted on it from outside.
+    /// Its motion about its centre, or force and torque about its centre that are exerted on it
+    /// from outside.
     pub motion: Motion,
     /// The velocity of its surface relative to the rigid motion.
     pub slip: Option<Slip>,
@@ -58,7 +61,8 @@ impl Body {
         }
     }
 
-    /// The same with its axis in this direction (any length but zero), turned there by the smallest rotation from z.
+    /// The same with its axis in this direction (any length but zero), turned there by the smallest
+    /// rotation from z.
     #[must_use]
     pub fn along(self, axis: impl Into<Vector3<f64>>) -> Self {
         let frame = Frame::along(self.frame.center(), Unit::new_normalize(axis.into()));
@@ -129,7 +133,8 @@ pub struct Suspension {
     pub background: LinearFlow,
     /// The viscosity of the fluid.
     pub viscosity: f64,
-    /// Points where velocity and pressure are wanted with the answer: its error estimate counts the velocities there.
+    /// Points where velocity and pressure are wanted with the answer: its error estimate counts the
+    /// velocities there.
     pub probes: Vec<Point3<f64>>,
 }
 
@@ -165,8 +170,9 @@ impl Suspension {
         }
     }
 
-    /// Moves every body for a time `dt` with a motion that was found: its centre along a straight line, and turned
-    /// about the direction of its angular velocity (Euler's method, of first order).
+    /// Moves every body for a time `dt` with a motion that was found: its centre along a straight
+    /// line, and turned about the direction of its angular velocity (Euler's method, of first
+    /// order).
     pub fn advance(&mut self, motions: impl IntoIterator<Item = RigidMotion>, dt: f64) {
         for (body, motion) in self.bodies.iter_mut().zip(motions) {
             body.frame = (body.frame).moved(dt * motion.velocity, dt * motion.angular_velocity);

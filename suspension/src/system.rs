@@ -4,8 +4,9 @@
 //!
 //! $$ y_i + \sum_{j \ne i} A_{ij} A_{jj}^{-1} y_j = f_i, \qquad \sigma_i = A_{ii}^{-1} y_i , $$
 //!
-//! whose unknown $y$ is what each body's layers make on its own surface. A body's own matrix is never applied. For a body
-//! that is free in some directions, what the others do to it is projected (see [`constraint`](super::constraint)).
+//! whose unknown $y$ is what each body's layers make on its own surface. A body's own matrix is
+//! never applied. For a body that is free in some directions, what the others do to it is projected
+//! (see [`constraint`](super::constraint)).
 
 use panel_quadrature::QuadratureError;
 
@@ -63,7 +64,8 @@ impl System {
         self.interactions.free_buffers();
     }
 
-    /// The velocities that the densities make on their own bodies, from the unknown of the preconditioned iteration.
+    /// The velocities that the densities make on their own bodies, from the unknown of the
+    /// preconditioned iteration.
     pub fn improved(&self, unknown: &[f64]) -> Vec<f64> {
         let mut improved = unknown.to_vec();
         self.improve(&mut improved);
@@ -101,7 +103,8 @@ impl System {
         self.add_interactions(y, tolerance)
     }
 
-    /// The velocities that the layers which make `velocities` on their own bodies make on all others.
+    /// The velocities that the layers which make `velocities` on their own bodies make on all
+    /// others.
     pub fn velocities_of_others(
         &mut self,
         velocities: &[f64],
@@ -114,8 +117,8 @@ impl System {
         Ok(of_others)
     }
 
-    /// Adds what the layers that make `velocities` on their own bodies make on the others, as far as the constraints
-    /// let it act.
+    /// Adds what the layers that make `velocities` on their own bodies make on the others, as far
+    /// as the constraints let it act.
     fn add_interactions(
         &mut self,
         velocities: &mut [f64],

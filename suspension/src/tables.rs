@@ -1,4 +1,5 @@
-//! What depends on a shape, its resolution and its layers alone: made once, shared by all bodies that are alike in them.
+//! What depends on a shape, its resolution and its layers alone: made once, shared by all bodies
+//! that are alike in them.
 
 use std::sync::{Arc, OnceLock};
 
@@ -12,7 +13,8 @@ use stokes_body::layers::LayerWeights;
 use stokes_body::matrix::ModalMatrices;
 use stokes_body::surface_grid::SurfaceGrid;
 
-/// Tables of one shape at one resolution, for the flow $w_D D[\sigma] + w_S S[\sigma]$ of a density, in the body's frame.
+/// Tables of one shape at one resolution, for the flow $w_D D[\sigma] + w_S S[\sigma]$ of a
+/// density, in the body's frame.
 #[derive(Debug)]
 pub(crate) struct Tables {
     pub discretization: Discretization,

@@ -36,8 +36,8 @@ impl Tolerances {
         }
     }
 
-    /// Those of a solution that another one is compared with: it samples slips and evaluates flows otherwise, so that
-    /// errors made there show in the difference.
+    /// Those of a solution that another one is compared with: it samples slips and evaluates flows
+    /// otherwise, so that errors made there show in the difference.
     pub fn of_comparison(target: f64) -> Self {
         Self {
             evaluation: BEST_EVALUATION,

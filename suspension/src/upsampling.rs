@@ -1,5 +1,5 @@
-//! A surface with more points, for targets that are near but not close: there a sum over a few thousand points costs less than exact integrals,
-//! and less than to read numbers that were kept.
+//! A surface with more points, for targets that are near but not close: there a sum over a few
+//! thousand points costs less than exact integrals, and less than to read numbers that were kept.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
@@ -15,7 +15,8 @@ pub(crate) const LEVELS: usize = 2;
 /// By how much nodes of a panel and azimuths are multiplied on each level.
 const FACTORS: [usize; LEVELS] = [2, 4];
 
-/// From where on the points of a level resolve what the panels do to `tolerance`, for densities that the surface's own nodes and modes resolve.
+/// From where on the points of a level resolve what the panels do to `tolerance`, for densities
+/// that the surface's own nodes and modes resolve.
 pub(crate) fn separation(
     discretization: &Discretization,
     n_max: usize,
@@ -60,7 +61,8 @@ impl Upsampling {
         })
     }
 
-    /// A scaled field on the surface's own nodes at the many points, times their shares of the surface.
+    /// A scaled field on the surface's own nodes at the many points, times their shares of the
+    /// surface.
     pub fn to_points(
         &self,
         field: &[f64],

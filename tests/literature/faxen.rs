@@ -1,5 +1,5 @@
-//! A sphere in a linear flow, held or free (Faxén 1922): $F = 6\pi a (U - u_\infty)$, $T = 8\pi a^3
-//! (\Omega - \omega_\infty)$, exactly.
+//! A sphere in a linear flow, held or free (Faxén 1922): $F = 6\pi a (U - u_\infty)$, $T = 8\pi
+//! a^3 (\Omega - \omega_\infty)$, exactly.
 
 use std::f64::consts::PI;
 

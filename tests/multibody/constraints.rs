@@ -8,8 +8,8 @@ use super::common::{answer, at, ball, direction, moving, random, spheroid};
 const FREE: Component = Component::Free(0.0);
 const HELD: Component = Component::Imposed(0.0);
 
-/// In closed form (Kim & Karrila 1991, section 3.3): a spheroid 1 x 0.5 at 45 degrees takes a force of
-/// -12.17134697420 along z and 0.8244704675802 across to move along -z at unit speed.
+/// In closed form (Kim & Karrila 1991, section 3.3): a spheroid 1 x 0.5 at 45 degrees takes a force
+/// of -12.17134697420 along z and 0.8244704675802 across to move along -z at unit speed.
 #[test]
 fn a_tilted_rod_on_a_vertical_line() {
     let push = Component::Free(-1.0);
@@ -60,7 +60,8 @@ fn reference(tolerance: f64) -> (Vec<Body>, Answer) {
     (bodies, answer)
 }
 
-/// A body that is given some components of a motion, and the forces that this motion takes in the others, moves so.
+/// A body that is given some components of a motion, and the forces that this motion takes in the
+/// others, moves so.
 #[test]
 fn components_that_were_found_give_back_the_others() {
     let tolerance = 1e-5;
@@ -110,13 +111,13 @@ fn components_that_were_found_give_back_the_others() {
     }
 }
 
-/// Two pinned spheres side by side, one of them turned: the other turns against it, as far away as the rotlet says,
-/// $\Omega_2 = \frac12 \nabla \times (T \times x / 8\pi r^3)$.
+/// Two pinned spheres side by side, one of them turned: the other turns against it, as far away as
+/// the rotlet says, $\Omega_2 = \frac12 \nabla \times (T \times x / 8\pi r^3)$.
 #[test]
 fn pinned_spheres_turn_each_other() {
     let r = 40.0;
     let torque = Vector3::y();
-    let pinned = [Vector3::zeros(), torque].map(|torque| Motion::pinned(torque));
+    let pinned = [Vector3::zeros(), torque].map(Motion::pinned);
     let bodies = [at(0.0, 0.0, 0.0), at(r, 0.0, 0.0)].into_iter().zip(pinned);
     let bodies = bodies.map(|(frame, motion)| Body::new(ball(), frame).with_motion(motion));
     let answer = answer(&Suspension::new(bodies.collect::<Vec<_>>()), 1e-10);

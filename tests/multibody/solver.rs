@@ -17,7 +17,8 @@ fn uniform(panels: usize, order: usize, modes: usize, tolerance: f64) -> Options
     })
 }
 
-/// A swimmer whose slip looks different from all sides: its velocities turn with it, and never jump.
+/// A swimmer whose slip looks different from all sides: its velocities turn with it, and never
+/// jump.
 #[test]
 fn a_swimmer_turns_with_its_slip() {
     let slip = Slip::new(|x| {
@@ -130,7 +131,8 @@ fn earlier_answers_start_later_ones() {
     assert!(from_start < fresh_iterations);
 }
 
-/// Loads that are others ask for right-hand sides only: the same answer to the last bit as from a fresh solver.
+/// Loads that are others ask for right-hand sides only: the same answer to the last bit as from a
+/// fresh solver.
 #[test]
 fn loads_do_not_remember_each_other() {
     let options = uniform(3, 10, 8, 1e-6);
@@ -153,7 +155,8 @@ fn loads_do_not_remember_each_other() {
     assert!(t.assemble + t.factor == 0.0, "{t:?}");
 }
 
-/// Forces and pressures are in proportion to the viscosity, the velocities of free bodies to its inverse.
+/// Forces and pressures are in proportion to the viscosity, the velocities of free bodies to its
+/// inverse.
 #[test]
 fn viscosity_scales() {
     let mut thin = cube(2).with_probes([Point3::new(-2.0, 0.0, 1.0)]);

@@ -14,7 +14,8 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// The axis along a direction: coordinates of the laboratory if it is one of theirs, else distances from the middle.
+    /// The axis along a direction: coordinates of the laboratory if it is one of theirs, else
+    /// distances from the middle.
     pub fn along(direction: Unit<Vector3<f64>>, center: Point3<f64>, length: f64) -> Self {
         let j = direction.iamax();
         if direction[j].abs() < 1.0 - 1e-12 {

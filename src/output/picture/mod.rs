@@ -1,6 +1,7 @@
 //! The flow in a plane as a picture: colours, streamlines, and the bodies' sections.
 //!
-//! One SVG file without anything outside it: the colours are an embedded PNG of the grid, everything else is drawn as lines.
+//! One SVG file without anything outside it: the colours are an embedded PNG of the grid,
+//! everything else is drawn as lines.
 
 mod axis;
 mod raster;
@@ -22,10 +23,12 @@ use stokes_body::kernel::FlowAt;
 /// What the colours show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quantity {
-    /// The magnitude of the velocity, its component across the plane included: from zero to the largest.
+    /// The magnitude of the velocity, its component across the plane included: from zero to the
+    /// largest.
     #[default]
     Speed,
-    /// The pressure: the same up and down from zero, and so far that only one point in a thousand lies beyond.
+    /// The pressure: the same up and down from zero, and so far that only one point in a thousand
+    /// lies beyond.
     Pressure,
 }
 
@@ -59,7 +62,8 @@ const COVERED: f64 = 0.999;
 /// Length and half width of arrowheads, and the way from one to the next, in pixels.
 const ARROW: [f64; 3] = [8.5, 3.4, 170.0];
 
-/// The picture as SVG; `sections` are closed curves in the plane's coordinates, with what an odd number of them goes around filled grey.
+/// The picture as SVG; `sections` are closed curves in the plane's coordinates, with what an odd
+/// number of them goes around filled grey.
 ///
 /// # Errors
 /// If there is nothing to draw.
@@ -166,7 +170,8 @@ impl Canvas {
         lengths.map(|length| length * self.scale)
     }
 
-    /// The pixel of a point of the plane; those that lie far outside are moved nearer, to be numbers that every viewer can hold.
+    /// The pixel of a point of the plane; those that lie far outside are moved nearer, to be
+    /// numbers that every viewer can hold.
     fn place(&self, [x, y]: [f64; 2]) -> (f32, f32) {
         let [left, top, width, height] = self.frame();
         let pixels = |length: f64| (length * self.scale).clamp(-1e6, 1e6);

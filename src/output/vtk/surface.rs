@@ -21,7 +21,8 @@ use stokes_suspension::{Answer, BodyFlow, Flow, SuspensionError};
 /// The surfaces of bodies as closed meshes with what acts on them, in the laboratory.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
-    /// The vertices, body after body: the nodes of the generating curve, each turned to the azimuths in equal steps; then the poles, upper and lower.
+    /// The vertices, body after body: the nodes of the generating curve, each turned to the
+    /// azimuths in equal steps; then the poles, upper and lower.
     pub points: Vec<Point3<f64>>,
     /// Outward unit normals of the surface itself.
     pub normals: Vec<Vector3<f64>>,
@@ -174,7 +175,8 @@ impl Mesh {
     }
 }
 
-/// Quadrilaterals between neighbouring rings of vertices, and either triangles around the two poles or rings that close.
+/// Quadrilaterals between neighbouring rings of vertices, and either triangles around the two poles
+/// or rings that close.
 fn cells(rings: usize, azimuths: usize, poles: bool) -> Vec<Vec<u64>> {
     let vertex = |ring: usize, l: usize| (ring % rings * azimuths + l % azimuths) as u64;
     let [upper, lower] = [0, 1].map(|pole| (rings * azimuths + pole) as u64);

@@ -32,9 +32,9 @@ const KEYS: &[&str] = &[
 ];
 
 impl Case {
-    /// Reads a case file. Anything but a regular UTF-8 file of at most [`LARGEST_FILE`] bytes is
-    /// refused unread. The path `-` stands for standard input: the case is then named `stdin`, and
-    /// lies in the current folder.
+    /// Reads a case file. Anything but a regular UTF-8 file of at most
+    /// [`LARGEST_FILE`](super::LARGEST_FILE) bytes is refused unread. The path `-` stands for
+    /// standard input: the case is then named `stdin`, and lies in the current folder.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, CaseError> {
         let path = path.as_ref();
         if path == Path::new("-") {

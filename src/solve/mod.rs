@@ -1,4 +1,4 @@
-//! From a case to its answer: a case file is read, asked as a [`Suspension`](crate::Suspension),
+//! From a case to its answer: a case file is read, asked as a [`Suspension`],
 //! and reported.
 
 mod explain;

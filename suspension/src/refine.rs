@@ -45,6 +45,10 @@ const TIGHTENED: usize = 3;
 /// answer: the estimate tells how much.
 const STALLED: f64 = 100.0;
 
+/// What checks keep of shapes may take one part in so many of the memory there is: a single question
+/// has no use for it.
+const KEPT_IN: usize = 8;
+
 /// What all rounds of one question share.
 pub(crate) struct Rounds<'a> {
     /// The question, for viscosity 1, spheres without slip turned to their neighbours.
@@ -118,7 +122,7 @@ impl Rounds<'_> {
     /// What checks keep: what depends on shapes, if memory does for it.
     fn keep(&self, kinds: &[Kind]) -> Keep {
         let needed = needed_memory(kinds, Keep::Shapes, self.options);
-        if 2 * needed <= memory::budget(self.options) {
+        if KEPT_IN * needed <= memory::budget(self.options) {
             Keep::Shapes
         } else {
             Keep::Nothing

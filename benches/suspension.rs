@@ -478,8 +478,8 @@ fn walk(count: usize, steps: usize, tolerance: f64) -> Result<(), Box<dyn Error>
             let [matrices, near] = setup(&kept);
             sums[2] += matrices;
             sums[3] += near;
-            sums[4] += kept.statistics.iteration.iterations as f64;
-            sums[5] += fresh.statistics.iteration.iterations as f64;
+            sums[4] += kept.statistics.iterations as f64;
+            sums[5] += fresh.statistics.iterations as f64;
             let off = kept.bodies.iter().zip(&fresh.bodies).map(|(a, b)| {
                 let motion = (a.motion - b.motion).velocity.norm() / fresh.largest_speed;
                 let largest = fresh.bodies.iter().map(|b| b.wrench.force.norm());

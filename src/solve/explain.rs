@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use super::SolveError;
+use super::error::SolveError;
 use super::question::{at_shape, name};
 use crate::case::{Case, CaseError};
 use bodies_of_revolution::ContactError;

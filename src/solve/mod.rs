@@ -1,6 +1,7 @@
 //! From a case to its answer: a case file is read, asked as a [`Suspension`],
 //! and reported.
 
+mod error;
 mod explain;
 mod question;
 mod report;
@@ -10,25 +11,10 @@ use nalgebra::Vector3;
 use crate::case::{Case, CaseError, PlaneFrame};
 use crate::output::Report;
 use crate::plane::{Plane, PlaneOptions, PlaneOrientation};
+pub use error::SolveError;
 use question::Question;
 use stokes_body::progress::Progress;
 use stokes_suspension::{Answer, Options, SolveError as Unsolved, Solver, Suspension};
-
-/// Why a case has no answer.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SolveError {
-    /// The case is at fault: its geometry, what it would take, or a part of the format that is not
-    /// built.
-    #[error(transparent)]
-    Case(#[from] CaseError),
-    /// Cancelled by the caller.
-    #[error("interrupted")]
-    Interrupted,
-    /// The computation itself failed.
-    #[error("{0}")]
-    Failed(String),
-}
 
 /// A case that was solved.
 #[derive(Clone, Debug)]

@@ -120,8 +120,8 @@ fn earlier_answers_start_later_ones() {
             error <= found.error_estimate + fresh.error_estimate,
             "{error:e}"
         );
-        from_start += found.statistics.iteration.iterations;
-        fresh_iterations += fresh.statistics.iteration.iterations;
+        from_start += found.statistics.iterations;
+        fresh_iterations += fresh.statistics.iterations;
         let t = found.statistics.timings;
         assert_eq!(found.statistics.rounds, 1);
         assert!(t.assemble + t.factor <= 0.1 * (first.assemble + first.factor));

@@ -4,6 +4,7 @@
 //! everything else is drawn as lines.
 
 mod axis;
+mod error;
 mod raster;
 
 use plotters::style::RGBColor;
@@ -18,6 +19,7 @@ use super::plot::colour::{blue_red, viridis};
 use crate::plane::streamlines::{Streamline, evenly_spaced};
 use crate::plane::{Plane, PlaneFlow};
 use axis::Axis;
+pub use error::PictureError;
 use stokes_body::kernel::FlowAt;
 
 /// What the colours show.
@@ -30,23 +32,6 @@ pub enum Quantity {
     /// The pressure: the same up and down from zero, and so far that only one point in a thousand
     /// lies beyond.
     Pressure,
-}
-
-/// Why there is no picture.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum PictureError {
-    /// No point of the plane lies in the fluid.
-    #[error(
-        "nothing to draw: the plane lies inside the body, expected one that reaches into the fluid"
-    )]
-    NoFluid,
-    /// A value is infinite or not a number.
-    #[error("cannot draw the picture: the flow is not finite everywhere in the plane")]
-    NotFinite,
-    /// The image of the colours cannot be encoded.
-    #[error("cannot draw the picture: {0}")]
-    Image(String),
 }
 
 /// The longer side of the plane, in pixels.

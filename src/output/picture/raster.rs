@@ -4,7 +4,7 @@ use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use plotters::style::RGBColor;
 
-use super::PictureError;
+use super::error::PictureError;
 
 /// A PNG image of shades from 0 to 1, rows of `width` from below, in 256 colours; as base64.
 pub fn png(

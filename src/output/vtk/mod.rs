@@ -9,41 +9,10 @@
 //! Inside a body velocity and pressure are NaN, `inside` is 1, and `vtkGhostType` is 2 (hidden
 //! point), by which ParaView blanks the points.
 
+mod file;
 mod plane;
 mod surface;
 
+pub use file::VtkError;
 pub use plane::plane_file;
 pub use surface::Mesh;
-
-use nalgebra::Vector3;
-use vtkio::model::{Attribute, ByteOrder, DataArray, DataSet, Version, Vtk};
-
-/// Why there is no VTK file.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("cannot write the VTK file: {0}")]
-pub struct VtkError(String);
-
-/// The bytes of a file.
-fn bytes(title: &str, data: DataSet) -> Result<Vec<u8>, VtkError> {
-    let file = Vtk {
-        version: Version::new_xml(1, 0),
-        title: title.to_owned(),
-        byte_order: ByteOrder::LittleEndian,
-        data,
-        file_path: None,
-    };
-    let mut bytes = Vec::new();
-    file.write_xml(&mut bytes)
-        .map_err(|error| VtkError(error.to_string()))?;
-    Ok(bytes)
-}
-
-/// Numbers one after the other.
-fn flat<'a>(vectors: impl IntoIterator<Item = &'a Vector3<f64>>) -> Vec<f64> {
-    let components = vectors.into_iter().flat_map(|v| [v.x, v.y, v.z]);
-    components.collect()
-}
-
-fn vectors(name: &str, values: &[Vector3<f64>]) -> Attribute {
-    Attribute::DataArray(DataArray::vectors(name).with_vec(flat(values)))
-}

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use vtkio::model::{Attribute, Attributes, DataArray, DataSet, Extent, Piece, StructuredGridPiece};
 
-use super::{VtkError, bytes, flat, vectors};
+use super::file::{VtkError, bytes, flat, vectors};
 use crate::plane::PlaneFlow;
 
 /// What VTK calls a hidden point.

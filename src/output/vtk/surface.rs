@@ -9,7 +9,7 @@ use vtkio::model::{
     VertexNumbers,
 };
 
-use super::{VtkError, bytes, flat, vectors};
+use super::file::{VtkError, bytes, flat, vectors};
 use bodies_of_revolution::Topology;
 use stokes_body::discretization::Discretization;
 use stokes_body::flow::AXIAL;

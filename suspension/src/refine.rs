@@ -45,8 +45,8 @@ const TIGHTENED: usize = 3;
 /// answer: the estimate tells how much.
 const STALLED: f64 = 100.0;
 
-/// What checks keep of shapes may take one part in so many of the memory there is: a single question
-/// has no use for it.
+/// What checks keep of shapes may take one part in so many of the memory there is: a single
+/// question has no use for it.
 const KEPT_IN: usize = 8;
 
 /// What all rounds of one question share.

@@ -105,7 +105,6 @@ fn earlier_answers_start_later_ones() {
     let mut rng = fastrand::Rng::with_seed(62);
     let mut solver = Solver::new(Options::tolerance(tolerance));
     let mut before = solver.solve(&suspension).expect("an answer");
-    let first = before.statistics.timings;
     let (mut from_start, mut fresh_iterations) = (0, 0);
     for _ in 0..4 {
         for body in &mut suspension.bodies {
@@ -122,9 +121,7 @@ fn earlier_answers_start_later_ones() {
         );
         from_start += found.statistics.iterations;
         fresh_iterations += fresh.statistics.iterations;
-        let t = found.statistics.timings;
         assert_eq!(found.statistics.rounds, 1);
-        assert!(t.assemble + t.factor <= 0.1 * (first.assemble + first.factor));
         before = found;
     }
     println!("{from_start} iterations from a start, {fresh_iterations} fresh");

@@ -166,8 +166,11 @@ fn outside_with_the_single_layer() {
             errors(&solver, &inner(), &targets)
         })
         .collect();
-    assert!(results.windows(2).all(|e| e[1].0 < 1e-1 * e[0].0));
-    assert!(results[2].0 <= 1e-12);
+    // Each is ten times better than the one before, until rounding is left.
+    let floor = 1e-14;
+    let falls = |e: &[(f64, f64)]| e[1].0 < (1e-1 * e[0].0).max(floor);
+    assert!(results.windows(2).all(falls));
+    assert!(results[2].0 <= floor);
 }
 
 #[test]

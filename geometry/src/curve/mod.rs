@@ -19,7 +19,7 @@
 //! body.
 //!
 //! ```
-//! use bodies_of_revolution::{Panels, Spheroid, surface_area};
+//! use bodies_of_revolution::{Panels, Spheroid, curve::surface_area};
 //!
 //! let sphere = Spheroid::sphere(1.0)?;
 //! let panels = Panels::resolving(&sphere, 16, 1e-12)?;

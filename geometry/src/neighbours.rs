@@ -97,7 +97,7 @@ mod tests {
     #[test]
     fn finds_what_all_comparisons_find() {
         let mut chance = fastrand::Rng::with_seed(3);
-        let balls: Vec<Ball> = (0..300)
+        let balls: Vec<Ball> = (0..600)
             .map(|_| Ball {
                 center: Point3::from([(); 3].map(|()| 10.0 * chance.f64())),
                 radius: 10f64.powf(-2.0 + 2.0 * chance.f64()),

@@ -10,6 +10,7 @@ use std::collections::BinaryHeap;
 
 use nalgebra::Vector3;
 
+use super::least_first::{Bounded, LeastFirst};
 use super::meridian::Located;
 
 /// Angle, in radians, between the middle and the corners of the smallest patches.
@@ -77,24 +78,9 @@ impl Patch {
     }
 }
 
-impl PartialEq for Patch {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Patch {}
-
-impl PartialOrd for Patch {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Patch {
-    /// The one that may hold the least value is the greatest.
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        other.lower.total_cmp(&self.lower)
+impl Bounded for Patch {
+    fn lower(&self) -> f64 {
+        self.lower
     }
 }
 
@@ -111,19 +97,20 @@ pub(super) fn directions(
         for out in [axes[k], -axes[k]] {
             let face = [out, axes[(k + 1) % 3], axes[(k + 2) % 3]];
             for corner in [[-1.0, -1.0], [-1.0, 0.0], [0.0, -1.0], [0.0, 0.0]] {
-                heap.push(Patch::new(first, second, face, corner, 1.0));
+                let patch = Patch::new(first, second, face, corner, 1.0);
+                heap.push(LeastFirst(patch));
             }
         }
     }
     let mut looked = heap.len();
     let (mut best, mut shortest) = (f64::INFINITY, Vector3::z());
-    for patch in &heap {
+    for LeastFirst(patch) in &heap {
         if patch.length < best {
             (best, shortest) = (patch.length, patch.middle);
         }
     }
     let mut leaves: Vec<Patch> = Vec::new();
-    while let Some(patch) = heap.pop() {
+    while let Some(LeastFirst(patch)) = heap.pop() {
         if patch.lower > best + slack {
             break;
         }
@@ -139,7 +126,7 @@ pub(super) fn directions(
                 (best, shortest) = (part.length, part.middle);
             }
             looked += 1;
-            heap.push(part);
+            heap.push(LeastFirst(part));
         }
     }
     leaves.sort_by(|a, b| a.length.total_cmp(&b.length));

@@ -7,6 +7,7 @@ mod depth;
 mod descent;
 mod directions;
 mod gap;
+mod least_first;
 mod meridian;
 mod patches;
 mod placed;

@@ -11,6 +11,7 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::Point3;
 
 use super::descent::{Pair, STEPS, descend};
+use super::least_first::{Bounded, LeastFirst};
 use super::meridian::Located;
 
 /// Size of the smallest patches, over the bounding sphere's radius.
@@ -73,24 +74,9 @@ impl Patch {
     }
 }
 
-impl PartialEq for Patch {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Patch {}
-
-impl PartialOrd for Patch {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Patch {
-    /// The one that may be nearest is the greatest.
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        other.lower.total_cmp(&self.lower)
+impl Bounded for Patch {
+    fn lower(&self) -> f64 {
+        self.lower
     }
 }
 
@@ -103,22 +89,21 @@ pub(super) fn nearest(first: &Located<'_>, second: &Located<'_>, reach: f64) -> 
         for m in 0..8 {
             let part = |total: f64, k: usize| total * k as f64 / 8.0;
             let length = [part(first.length(), k), part(first.length(), k + 1)];
-            heap.push(Patch::new(
-                first,
-                second,
-                length,
-                [part(TAU, m), part(TAU, m + 1)],
-            ));
+            let azimuth = [part(TAU, m), part(TAU, m + 1)];
+            heap.push(LeastFirst(Patch::new(first, second, length, azimuth)));
         }
     }
     let mut looked = heap.len();
-    let mut best = heap.iter().fold(f64::INFINITY, |m, p| m.min(p.distance));
+    let mut best = f64::INFINITY;
+    for LeastFirst(patch) in &heap {
+        best = best.min(patch.distance);
+    }
     let finest = [
         (FINEST * radius).min(first.length() / 64.0),
         FINEST * radius,
     ];
     let mut leaves: Vec<Patch> = Vec::new();
-    while let Some(patch) = heap.pop() {
+    while let Some(LeastFirst(patch)) = heap.pop() {
         // Of patches that cannot hold the nearest point, none is left that can.
         if patch.lower > reach.min(best + slack) {
             break;
@@ -138,7 +123,7 @@ pub(super) fn nearest(first: &Located<'_>, second: &Located<'_>, reach: f64) -> 
             let patch = Patch::new(first, second, length, azimuth);
             best = best.min(patch.distance);
             looked += 1;
-            heap.push(patch);
+            heap.push(LeastFirst(patch));
         };
         if along && (!around || patch.extent[0] >= patch.extent[1]) {
             for length in halves(patch.length) {

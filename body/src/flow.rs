@@ -41,7 +41,7 @@ pub struct Flow {
 }
 
 /// The stress of a flow on the surface, for viscosity 1.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceStress {
     /// The traction, a force per area.
     pub traction: SurfaceModes,

@@ -9,9 +9,10 @@ use stokes_body::kernel::FlowAt;
 use stokes_body::resolution::Resolution;
 
 use super::error::SuspensionError;
-use super::flow::{Flow, Surface};
+use super::flow::Flow;
 use super::iteration::Iteration;
 use super::solution::Start;
+use super::surface::Surface;
 
 /// One body's part of the answer, in the laboratory and about the body's centre.
 #[derive(Clone, Debug)]

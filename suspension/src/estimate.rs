@@ -38,10 +38,19 @@ pub(crate) fn largest_speed(suspension: &Suspension, solution: &Solution) -> f64
 }
 
 fn speed_of(motion: &RigidMotion, size: f64) -> f64 {
-    motion
-        .velocity
-        .norm()
-        .max(size * motion.angular_velocity.norm())
+    larger(
+        motion.velocity.norm(),
+        size * motion.angular_velocity.norm(),
+    )
+}
+
+/// The larger of two errors; infinite if one is not a number, which `max` would pass over.
+fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() {
+        f64::INFINITY
+    } else {
+        a.max(b)
+    }
 }
 
 /// Half the largest extent of a body's shape.
@@ -56,13 +65,7 @@ pub(crate) fn from_misses(
     misses: &[Miss],
     speed: f64,
 ) -> f64 {
-    let worst = misses.iter().fold(0.0f64, |most, miss| {
-        if miss.largest.is_nan() {
-            f64::INFINITY
-        } else {
-            most.max(miss.largest)
-        }
-    });
+    let worst = misses.iter().map(|miss| miss.largest).fold(0.0, larger);
     if worst == 0.0 {
         return 0.0;
     }
@@ -90,19 +93,19 @@ pub(crate) fn from_comparison(
 ) -> f64 {
     let both = probes.iter().zip(finer_probes);
     let in_flow = both.map(|(a, b)| (a.velocity - b.velocity).norm());
-    let in_flow = relative(in_flow.fold(0.0, f64::max), speed);
+    let in_flow = relative(in_flow.fold(0.0, larger), speed);
     let (mut motions, mut found, mut forces) = (0.0f64, SMALL * speed, 0.0f64);
     for (i, body) in suspension.bodies.iter().enumerate() {
         let size = size_of_shape(solution, i);
         let difference = solution.motions[i] - finer.motions[i];
-        motions = motions.max(speed_of(&difference, size));
+        motions = larger(motions, speed_of(&difference, size));
         if body.motion.is_found() {
             found = found.max(speed_of(&finer.motions[i], size));
         }
         if body.motion.is_held() {
             let Wrench { force, torque } = solution.wrenches[i] - finer.wrenches[i];
-            let difference = force.norm().max(torque.norm() / size);
-            forces = forces.max(body.frame.scale() * difference);
+            let difference = larger(force.norm(), torque.norm() / size);
+            forces = larger(forces, body.frame.scale() * difference);
         }
     }
     let forces = relative(forces, force_scale(suspension, finer, speed));

@@ -4,23 +4,22 @@
 //! body is put right. For few points, and for a body alone, every body's flow is evaluated by
 //! itself instead: that loses no digits.
 
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use bodies_of_revolution::{Ball, Frame, Insides, Neighbours, RigidMotion, Shape, Wrench};
 use nalgebra::{Matrix3, Point3, Vector3};
 use rayon::prelude::*;
 use stokes_body::discretization::Discretization;
-use stokes_body::flow::{
-    AXIAL, Flow as FlowOfBody, FlowError, Side, SurfaceStress, first_not_finite,
-};
+use stokes_body::flow::{Flow as FlowOfBody, FlowError, SurfaceStress, first_not_finite};
 use stokes_body::kernel::{FlowAt, FlowGradientAt};
-use stokes_body::linear_flow::{self, LinearFlow};
+use stokes_body::linear_flow::LinearFlow;
 use stokes_body::progress::{Progress, Silent};
 use stokes_body::surface::SurfaceModes;
 use stokes_fmm::{Output, Points, Singularities};
 
 use super::error::SuspensionError;
-use super::points::{LayerPoints, strengths_in_lab};
+use super::points::{LayerPoints, factors_of_layers};
 use super::sums::{Operators, Sums, are_few};
 
 /// One body's part in a flow.
@@ -39,7 +38,8 @@ pub struct BodyFlow {
 }
 
 impl BodyFlow {
-    fn on(&self) -> &Discretization {
+    /// Panels and nodes.
+    pub(crate) fn on(&self) -> &Discretization {
         self.disturbance.discretization()
     }
 
@@ -69,26 +69,6 @@ pub struct StressAt {
     pub gradient: Matrix3<f64>,
     /// Stress $-p I + \mu (\nabla u + (\nabla u)^\mathsf{T})$.
     pub stress: Matrix3<f64>,
-}
-
-/// One body's surface as points with what acts there, in the laboratory.
-///
-/// The sum of weights times a field is its integral over the surface: of the traction, minus the
-/// force that the body exerts on the fluid.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Surface {
-    /// The points.
-    pub points: Vec<Point3<f64>>,
-    /// Outward unit normals.
-    pub normals: Vec<Vector3<f64>>,
-    /// Every point's share of the area.
-    pub weights: Vec<f64>,
-    /// Velocity of the surface, and of the fluid there.
-    pub velocity: Vec<Vector3<f64>>,
-    /// Force per area that the fluid exerts on the body, of the whole flow.
-    pub traction: Vec<Vector3<f64>>,
-    /// Pressure of the fluid.
-    pub pressure: Vec<f64>,
 }
 
 /// The whole flow in the laboratory: the undisturbed flow, and what the layers of all bodies add to
@@ -121,11 +101,6 @@ const FINEST_SUM: f64 = 1e-12;
 const FINEST: f64 = 1e-15;
 /// Targets that are evaluated between two reports of progress.
 const CHUNK: usize = 1 << 16;
-/// Bodies whose tractions are found together.
-const BODIES: usize = 64;
-/// Half steps between the points of a ring and those at which the others' stress is sampled: as far
-/// from them as can be.
-const HALVES: usize = 1;
 
 /// What a flow is made of.
 pub(crate) struct Parts {
@@ -398,8 +373,10 @@ impl Flow {
         };
         for body in &inner.bodies {
             let frame = &body.frame;
+            let [single, double] = factors_of_layers(frame);
             body.disturbance.for_each_point(|point| {
-                let [stokeslet, stresslet] = strengths_in_lab(frame, point.single, point.double);
+                let stokeslet = single * frame.vector_to_lab(point.single);
+                let stresslet = double * frame.vector_to_lab(point.double);
                 points
                     .positions
                     .push(frame.point_to_lab(point.position.into()).into());
@@ -535,225 +512,69 @@ impl Flow {
         }
         Ok(())
     }
-
-    /// Traction and pressure of the fluid on the surfaces of some bodies, background included, with
-    /// the normal out of the body: per area of the laboratory, as vectors in the body's frame. What
-    /// was found once is kept.
-    ///
-    /// # Errors
-    /// If a quadrature rule is missing, or the caller cancels.
-    pub fn surface_stresses(
-        &self,
-        bodies: &[usize],
-        progress: &dyn Progress,
-    ) -> Result<Vec<&SurfaceStress>, SuspensionError> {
-        let stresses = &self.0.stresses;
-        let missing = bodies
-            .iter()
-            .copied()
-            .filter(|&body| stresses[body].get().is_none());
-        let missing: Vec<usize> = missing.collect();
-        progress.begin("tractions", missing.len());
-        for some in missing.chunks(BODIES) {
-            if progress.is_cancelled() {
-                return Err(SuspensionError::Interrupted);
-            }
-            for (&body, stress) in some.iter().zip(self.new_stresses(some)?) {
-                stresses[body].get_or_init(|| stress);
-            }
-            progress.advance(some.len());
-        }
-        Ok(bodies
-            .iter()
-            .filter_map(|&body| stresses[body].get())
-            .collect())
-    }
-
-    /// A body's own layers are taken mode by mode, what the others do on rings of points.
-    fn new_stresses(&self, bodies: &[usize]) -> Result<Vec<SurfaceStress>, SuspensionError> {
-        let inner = &*self.0;
-        let tolerance = self.of_densities(inner.tolerance);
-        let mut targets = Vec::new();
-        let mut first = Vec::with_capacity(bodies.len());
-        for &body in bodies {
-            let BodyFlow {
-                frame, disturbance, ..
-            } = &inner.bodies[body];
-            let points = ring_points(disturbance.discretization(), disturbance.azimuths()?);
-            first.push(targets.len());
-            targets.extend(points.iter().map(|&x| frame.point_to_lab(x)));
-        }
-        first.push(targets.len());
-        let owner = |target: usize| bodies[first.partition_point(|&f| f <= target) - 1];
-        let found = self.of_others(&targets, tolerance, owner)?;
-        let stresses = bodies.iter().enumerate().map(|(place, &body)| {
-            let BodyFlow {
-                frame, disturbance, ..
-            } = &inner.bodies[body];
-            let nodes = disturbance.discretization().nodes();
-            let own = disturbance.surface_stress(Side::Exterior)?;
-            let samples = [disturbance.azimuths()?, HALVES];
-            let n_max = (disturbance.modes() - 1).max(linear_flow::LAST_MODE);
-            let mut at = found[first[place]..first[place + 1]].iter();
-            let traction =
-                SurfaceModes::of_samples(nodes.len(), n_max, samples, |k, [cos, sin]| {
-                    let [across, along] = nodes[k].normal;
-                    let normal = Vector3::new(across * cos, across * sin, along);
-                    let mut at = at.next().copied().unwrap_or_default();
-                    at.gradient += inner.background.gradient;
-                    frame.vector_to_body(at.stress() * frame.vector_to_lab(normal))
-                });
-            let mut at = found[first[place]..first[place + 1]].iter();
-            let pressure = SurfaceModes::of_samples(nodes.len(), n_max, samples, |_, _| {
-                at.next()
-                    .map_or_else(Vector3::zeros, |at| at.pressure * Vector3::z())
-            });
-            let scale = frame.scale();
-            let whole = |others: SurfaceModes, own: &SurfaceModes| {
-                others.plus(1.0 / scale, own).scaled(inner.viscosity)
-            };
-            Ok(SurfaceStress {
-                traction: whole(traction, &own.traction),
-                pressure_along_axis: whole(pressure, &own.pressure_along_axis),
-            })
-        });
-        stresses.collect()
-    }
-
-    /// The flow of all bodies but the one that a target is on; for viscosity 1, without the
-    /// undisturbed flow.
-    fn of_others(
-        &self,
-        targets: &[Point3<f64>],
-        tolerance: f64,
-        owner: impl Fn(usize) -> usize + Sync,
-    ) -> Result<Vec<FlowGradientAt>, SuspensionError> {
-        let inner = &*self.0;
-        let mut found = vec![FlowGradientAt::default(); targets.len()];
-        if inner.bodies.len() == 1 {
-            return Ok(found);
-        }
-        if let Some(mut fast) = self.fast_sum::<true>(targets.len(), tolerance)? {
-            found.clear();
-            for some in targets.chunks(CHUNK) {
-                found.extend(self.sum(&mut fast, some, tolerance)?);
-            }
-            let leaves_out = |body: usize, target: usize| owner(target) == body;
-            self.correct::<true>(targets, tolerance, leaves_out, &mut found)?;
-            for (index, body) in inner.bodies.iter().enumerate() {
-                let own: Vec<usize> = (0..targets.len()).filter(|&t| owner(t) == index).collect();
-                let in_body = own.iter().map(|&t| body.frame.point_to_body(targets[t]));
-                let of_own = body.disturbance.of_points(&in_body.collect::<Vec<_>>())?;
-                for (&target, at) in own.iter().zip(of_own) {
-                    found[target] -= in_lab(&body.frame, at);
-                }
-            }
-            return Ok(found);
-        }
-        for (index, body) in inner.bodies.iter().enumerate() {
-            let others: Vec<usize> = (0..targets.len()).filter(|&t| owner(t) != index).collect();
-            let in_body = others.iter().map(|&t| body.frame.point_to_body(targets[t]));
-            let in_body: Vec<Point3<f64>> = in_body.collect();
-            let of_body = body.disturbance.evaluate::<true>(&in_body, tolerance)?;
-            for (&target, at) in others.iter().zip(of_body) {
-                found[target] += in_lab(&body.frame, at);
-            }
-        }
-        Ok(found)
-    }
-
-    /// The surface of a body as points, with what acts there; in the laboratory.
-    ///
-    /// # Errors
-    /// If there is no such body, or a quadrature rule is missing.
-    pub fn surface(&self, body: usize) -> Result<Surface, SuspensionError> {
-        let bodies = self.0.bodies.len();
-        let Some(of_body) = self.0.bodies.get(body) else {
-            return Err(SuspensionError::NoBody { body, bodies });
-        };
-        let stresses = self.surface_stresses(&[body], &Silent)?;
-        let mut surface = Surface::default();
-        for stress in stresses {
-            surface = of_body.surface(stress);
-        }
-        Ok(surface)
-    }
-
-    /// The rate of work $-\int u \cdot \sigma\nu\\, d\Gamma$ that every body's surface does on the
-    /// fluid; of a swimmer its slip included. In a fluid at rest far away, the sum is the
-    /// dissipation.
-    ///
-    /// In the rigid motion it is $F \cdot U + T \cdot \Omega$; the traction is needed for the
-    /// slip's part only.
-    ///
-    /// # Errors
-    /// If a quadrature rule is missing, or the caller cancels.
-    pub fn powers(&self, progress: &dyn Progress) -> Result<Vec<f64>, SuspensionError> {
-        let inner = &*self.0;
-        let slips = (0..inner.bodies.len()).filter(|&body| inner.bodies[body].slip.is_some());
-        let slips: Vec<usize> = slips.collect();
-        let mut powers: Vec<f64> = (inner.bodies.iter())
-            .map(|body| {
-                let scale = body.frame.scale();
-                inner.viscosity * scale * body.wrench.power(&body.motion)
-            })
-            .collect();
-        for (&body, stress) in slips.iter().zip(self.surface_stresses(&slips, progress)?) {
-            let of = &inner.bodies[body];
-            if let Some(slip) = &of.slip {
-                let area = of.frame.scale().powi(2);
-                powers[body] -= area * slip.inner_product(of.on(), &stress.traction);
-            }
-        }
-        Ok(powers)
-    }
 }
 
 impl BodyFlow {
-    fn surface(&self, stress: &SurfaceStress) -> Surface {
-        let (nodes, frame) = (self.on().nodes(), &self.frame);
-        let velocity = self.surface_velocity();
-        let azimuths = 2 * stress.traction.modes().max(velocity.modes()) + 1;
-        let mut surface = Surface::default();
-        for (k, node) in nodes.iter().enumerate() {
-            for l in 0..azimuths {
-                let theta = std::f64::consts::TAU * l as f64 / azimuths as f64;
-                let (sin, cos) = theta.sin_cos();
-                let turned =
-                    |[r, t, z]: [f64; 3]| Vector3::new(r * cos - t * sin, r * sin + t * cos, z);
-                let to_lab = |vector: [f64; 3]| frame.vector_to_lab(turned(vector));
-                let point = turned([node.r, 0.0, node.z]);
-                surface.points.push(frame.point_to_lab(point.into()));
-                surface
-                    .normals
-                    .push(to_lab([node.normal[0], 0.0, node.normal[1]]));
-                let share = std::f64::consts::TAU / azimuths as f64 * node.weight;
-                surface.weights.push(share * frame.scale().powi(2));
-                surface.velocity.push(to_lab(velocity.at(k, theta)));
-                surface.traction.push(to_lab(stress.traction.at(k, theta)));
-                let pressure = stress.pressure_along_axis.at(k, theta)[AXIAL];
-                surface.pressure.push(pressure);
-            }
-        }
-        surface
-    }
-
     /// The body's shape.
     pub fn shape(&self) -> &Shape {
         self.on().curve()
     }
 }
 
-/// Points on rings of so many, ring after ring, between those of the densities; in the body's
-/// frame.
-fn ring_points(discretization: &Discretization, azimuths: usize) -> Vec<Point3<f64>> {
-    let nodes = discretization.nodes();
-    let mut points = Vec::with_capacity(nodes.len() * azimuths);
-    SurfaceModes::of_samples(nodes.len(), 0, [azimuths, HALVES], |k, [cos, sin]| {
-        points.push(Point3::new(nodes[k].r * cos, nodes[k].r * sin, nodes[k].z));
-        Vector3::zeros()
-    });
-    points
+impl Flow {
+    /// Room for the stress on every surface, made when it is first wanted.
+    pub(crate) fn stresses(&self) -> &[OnceLock<SurfaceStress>] {
+        &self.0.stresses
+    }
+
+    /// The flow of all bodies but the one whose ring of targets it is; for viscosity 1, without the
+    /// undisturbed flow.
+    pub(crate) fn of_others(
+        &self,
+        targets: &[Point3<f64>],
+        rings: &[(usize, Range<usize>)],
+    ) -> Result<Vec<FlowGradientAt>, SuspensionError> {
+        let bodies = &self.0.bodies;
+        let mut found = vec![FlowGradientAt::default(); targets.len()];
+        if bodies.len() == 1 {
+            return Ok(found);
+        }
+        let tolerance = self.of_densities(self.0.tolerance);
+        let in_body = |body: &BodyFlow, range: Range<usize>| -> Vec<Point3<f64>> {
+            let targets = targets[range].iter();
+            targets.map(|&x| body.frame.point_to_body(x)).collect()
+        };
+        if let Some(mut fast) = self.fast_sum::<true>(targets.len(), tolerance)? {
+            found.clear();
+            for some in targets.chunks(CHUNK) {
+                found.extend(self.sum(&mut fast, some, tolerance)?);
+            }
+            let mut own = vec![0..0; bodies.len()];
+            for (body, ring) in rings {
+                own[*body] = ring.clone();
+            }
+            let leaves_out = |body: usize, target: usize| own[body].contains(&target);
+            self.correct::<true>(targets, tolerance, leaves_out, &mut found)?;
+            for (body, ring) in rings {
+                let body = &bodies[*body];
+                let of_own = body.disturbance.of_points(&in_body(body, ring.clone()))?;
+                for (found, at) in found[ring.clone()].iter_mut().zip(of_own) {
+                    *found -= in_lab(&body.frame, at);
+                }
+            }
+            return Ok(found);
+        }
+        for (index, body) in bodies.iter().enumerate() {
+            for (_, ring) in rings.iter().filter(|(owner, _)| *owner != index) {
+                let near = in_body(body, ring.clone());
+                let of_body = body.disturbance.evaluate::<true>(&near, tolerance)?;
+                for (found, at) in found[ring.clone()].iter_mut().zip(of_body) {
+                    *found += in_lab(&body.frame, at);
+                }
+            }
+        }
+        Ok(found)
+    }
 }
 
 /// A flow at a point of the body's frame, in the laboratory.

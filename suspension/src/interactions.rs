@@ -6,7 +6,6 @@
 
 use std::time::Instant;
 
-use nalgebra::Vector3;
 use panel_quadrature::QuadratureError;
 use rayon::prelude::*;
 use stokes_fmm::{FmmError, Output, Points, Singularities, direct};
@@ -14,7 +13,7 @@ use stokes_fmm::{FmmError, Output, Points, Singularities, direct};
 use super::batches::{Batches, multiply};
 use super::layout::Layout;
 use super::near::{self, Near};
-use super::points::{LayerPoints, strengths_in_lab};
+use super::points::{LayerPoints, factors_of_layers};
 use super::sums::{self, Operators, Sums};
 use super::tables::Member;
 
@@ -301,19 +300,17 @@ impl Interactions {
                     }
                     let strengths = &mut strengths.points;
                     grid.to_points(field, scratch, strengths);
+                    let [single, double] = factors_of_layers(frame);
+                    let single = tables.weights.single * single;
+                    let double = tables.weights.double * double;
                     for (point, place) in grid.places().enumerate() {
                         let strength = strengths.each_ref().map(|s| s[place]);
-                        let strength = Vector3::from(strength);
-                        let (single, double) = (
-                            tables.weights.single * strength,
-                            tables.weights.double * strength,
-                        );
-                        let [stokeslet, stresslet] = strengths_in_lab(frame, single, double);
+                        let in_lab = frame.vector_to_lab(strength.into());
                         if let Some(stokeslets) = &mut stokeslets {
-                            stokeslets[point] = stokeslet.into();
+                            stokeslets[point] = (single * in_lab).into();
                         }
                         if let Some(stresslets) = &mut stresslets {
-                            stresslets[point] = stresslet.into();
+                            stresslets[point] = (double * in_lab).into();
                         }
                     }
                 },

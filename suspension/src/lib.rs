@@ -19,7 +19,7 @@
 //! |---|---|
 //! | [`suspension`], [`motion`], [`slip`] | the question |
 //! | [`options`], [`solver`] | how it is answered |
-//! | [`answer`], [`flow`], `further_errors` | the answer |
+//! | [`answer`], [`flow`], [`surface`], `further_errors` | the answer |
 //! | [`grand`] | grand resistance and mobility matrices |
 //! | `arrangement`, `resolution`, `refine`, `estimate` | resolutions, and the error |
 //! | `class`, `tables`, `finer` | what belongs to a shape at a resolution |
@@ -57,6 +57,7 @@ mod solution;
 mod solve_error;
 pub mod solver;
 mod sums;
+pub mod surface;
 pub mod suspension;
 mod system;
 mod tables;
@@ -65,7 +66,7 @@ mod upsampling;
 
 pub use answer::{Answer, BodyAnswer, Statistics, Timings};
 pub use error::SuspensionError;
-pub use flow::{BodyFlow, Flow, StressAt, Surface};
+pub use flow::{BodyFlow, Flow, StressAt};
 pub use grand::GrandMatrix;
 pub use inexact_krylov::{Method, Stop};
 pub use interactions::InteractionError;
@@ -75,4 +76,5 @@ pub use options::{Accuracy, Levels, Options};
 pub use slip::Slip;
 pub use solve_error::SolveError;
 pub use solver::Solver;
+pub use surface::Surface;
 pub use suspension::{Body, Suspension};

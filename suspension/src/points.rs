@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use bodies_of_revolution::Frame;
-use nalgebra::Vector3;
 use stokes_fmm::{Singularities, Strengths, Stresslets};
 
 /// Points with Stokeslets and stresslets.
@@ -16,22 +15,15 @@ pub(crate) struct LayerPoints {
     pub singularities: Singularities,
 }
 
-/// The strengths at a point in the laboratory, from the densities of single and double layer times
-/// the point's share of the surface, all in the body's frame.
+/// What the densities of single and double layer, times a point's share of the surface and turned
+/// into the laboratory, are multiplied by to be a Stokeslet and a stresslet.
 ///
 /// Shares of the surface grow with the square of the scale, and a single layer's density with the
-/// inverse of the scale. This is the place where the sign is turned: a stresslet of the sum is
-/// minus our double layer.
-pub(crate) fn strengths_in_lab(
-    frame: &Frame,
-    single: Vector3<f64>,
-    double: Vector3<f64>,
-) -> [Vector3<f64>; 2] {
+/// inverse of the scale. This is the place where the sign is turned: a stresslet of the sum is minus
+/// our double layer.
+pub(crate) fn factors_of_layers(frame: &Frame) -> [f64; 2] {
     let scale = frame.scale();
-    [
-        scale * frame.vector_to_lab(single),
-        -scale * scale * frame.vector_to_lab(double),
-    ]
+    [scale, -scale * scale]
 }
 
 impl LayerPoints {

@@ -204,7 +204,8 @@ impl Rounds<'_> {
                 break;
             }
             kinds = finer;
-            let known = latest.solution.classes.all().to_vec();
+            let mut known = latest.solution.classes.all().to_vec();
+            known.extend(self.classes.iter().cloned());
             // Freed first: two would take twice the memory.
             drop(assembly);
             assembly = self.assemble(&kinds, tolerances, &known)?;

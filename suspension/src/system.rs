@@ -129,23 +129,20 @@ impl System {
         density.clear();
         density.extend_from_slice(velocities);
         let layout = self.interactions.layout();
-        let before = self
-            .constraints
-            .iter()
-            .enumerate()
-            .map(|(body, constraint)| {
-                let first = |it: &Constraint| velocities[layout.of(body)][..it.len()].to_vec();
-                constraint.as_ref().map(first)
-            });
-        let before: Vec<Option<Vec<f64>>> = before.collect();
+        let before: Vec<(usize, Vec<f64>)> = (self.constraints.iter().enumerate())
+            .filter_map(|(body, constraint)| {
+                let first = constraint.as_ref()?.len();
+                Some((body, velocities[layout.of(body)][..first].to_vec()))
+            })
+            .collect();
         self.solve_bodies(&mut density);
         let added = self
             .interactions
             .add_velocities(&density, velocities, tolerance);
         self.density = density;
         let layout = self.interactions.layout();
-        for (body, before) in before.into_iter().enumerate() {
-            if let (Some(constraint), Some(before)) = (&self.constraints[body], before) {
+        for (body, before) in before {
+            if let Some(constraint) = &self.constraints[body] {
                 let now = &mut velocities[layout.of(body)][..before.len()];
                 let mut of_others: Vec<f64> = now.iter().zip(&before).map(|(a, b)| a - b).collect();
                 constraint.project(&mut of_others);

@@ -25,7 +25,8 @@ fn a_tilted_rod_on_a_vertical_line() {
         let force = (body.wrench.force - Vector3::new(across, 0.0, -1.0)).norm();
         let turning = body.motion.angular_velocity.norm() + body.wrench.torque.norm();
         println!("{scale} {viscosity}: motion {motion:.1e}, force {force:.1e}, {turning:.1e}");
-        assert!(motion < 1e-11 && force < 1e-11 && turning < 1e-11);
+        // The reference has thirteen digits.
+        assert!(motion < 2e-12 && force < 1e-13 && turning < 9e-16);
         assert!(answer.error_estimate <= 1e-11);
     }
 }
@@ -107,7 +108,7 @@ fn components_that_were_found_give_back_the_others() {
             "{error:.1e}, estimates {:.1e} and {:.1e}, {} iterations",
             answer.error_estimate, held.error_estimate, answer.statistics.iteration.iterations
         );
-        assert!(error <= 2.0 * tolerance && answer.error_estimate <= tolerance);
+        assert!(error <= 0.5 * tolerance && answer.error_estimate <= tolerance);
     }
 }
 
@@ -125,5 +126,5 @@ fn pinned_spheres_turn_each_other() {
     let exact = -1.0 / (16.0 * std::f64::consts::PI * r.powi(3));
     println!("{found:e} {exact:e}");
     // The next terms are smaller by r^-1, from the force that pins: 3/4r.
-    assert!((found / exact - 1.0).abs() < 0.05);
+    assert!((found / exact - 1.0).abs() < 5e-3);
 }

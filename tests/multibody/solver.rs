@@ -1,6 +1,6 @@
 //! One solver for many questions: what it keeps, and where it starts.
 
-use axistokes::suspension::SolveError;
+use axistokes::suspension::{SolveError, SuspensionError};
 use axistokes::{
     Accuracy, Answer, Body, Frame, Motion, Options, Silent, Slip, Solver, Suspension, Wrench,
 };
@@ -56,7 +56,7 @@ fn a_swimmer_turns_with_its_slip() {
         worst = worst.max(velocity.norm()).max(angular.norm());
     }
     println!("worst {worst:.1e}");
-    assert!(worst <= 1e-11);
+    assert!(worst <= 9e-15);
 }
 
 /// The same directions given as an axis and as a quaternion are the same rotation.
@@ -167,12 +167,16 @@ fn viscosity_scales() {
         }
     }
     let five = try_with(&thin, &options).expect("an answer");
+    let mut worst = 0.0f64;
     for (a, b) in one.bodies.iter().zip(&five.bodies) {
-        assert!((5.0 * a.wrench.force - b.wrench.force).norm() < 1e-9);
-        assert!((a.motion.velocity - b.motion.velocity).norm() < 1e-9);
-        assert!((5.0 * a.stresslet - b.stresslet).norm() < 1e-9);
+        worst = worst
+            .max((5.0 * a.wrench.force - b.wrench.force).norm())
+            .max((a.motion.velocity - b.motion.velocity).norm())
+            .max((5.0 * a.stresslet - b.stresslet).norm());
     }
-    assert!((5.0 * one.probes[0].pressure - five.probes[0].pressure).abs() < 1e-9);
+    worst = worst.max((5.0 * one.probes[0].pressure - five.probes[0].pressure).abs());
+    // Seen: 1.5e-14.
+    assert!(worst < 1e-13, "{worst:.1e}");
     let surface = five.surface(1).expect("a surface");
     let force: Vector3<f64> = surface
         .traction
@@ -180,5 +184,28 @@ fn viscosity_scales() {
         .zip(&surface.weights)
         .map(|(t, w)| *w * t)
         .sum();
-    assert!((force + five.bodies[1].wrench.force).norm() < 0.02 * force.norm().max(1.0));
+    // Seen: 7.3e-7; the iteration ends at 1e-6.
+    let missed = (force + five.bodies[1].wrench.force).norm() / force.norm();
+    assert!(missed < 5e-6, "{missed:.1e}");
+}
+
+/// A body asked for many times has the stress that it has when asked for once, although so many
+/// points would be summed fast; one that is not there is an error.
+#[test]
+fn stresses_of_any_bodies_may_be_asked_for() {
+    let options = uniform(3, 10, 8, 1e-6);
+    let stresses = |bodies: &[usize]| {
+        let answer = try_with(&cube(2), &options).expect("an answer");
+        let found = answer.flow.surface_stresses(bodies, &Silent);
+        found.map(|found| found.into_iter().cloned().collect::<Vec<_>>())
+    };
+    let once = stresses(&[1]).expect("a stress");
+    let often = stresses(&[1; 100]).expect("stresses");
+    assert_eq!(often.len(), 100);
+    assert!(often.iter().all(|stress| *stress == once[0]));
+    let error = stresses(&[0, 8]).expect_err("there is no such body");
+    assert!(
+        matches!(error, SuspensionError::NoBody { body: 8, bodies: 8 }),
+        "{error}"
+    );
 }

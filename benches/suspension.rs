@@ -408,8 +408,8 @@ fn solve(count: usize, tolerance: f64, points: [usize; 3]) -> Result<(), Box<dyn
         answer.largest_speed
     );
     println!(
-        "{:.0} unknowns per second and iteration; {timings:?}; near points and bytes {:?}; {} classes",
-        statistics.unknowns as f64 * iteration.products as f64 / timings.iterate,
+        "{} rounds, {timings:?}; near points and bytes {:?}; {} classes",
+        statistics.rounds,
         (statistics.near_points, statistics.near_bytes),
         statistics.classes
     );
@@ -475,9 +475,9 @@ fn walk(count: usize, steps: usize, tolerance: f64) -> Result<(), Box<dyn Error>
             let start = std::time::Instant::now();
             let fresh = answer(&suspension, Options::tolerance(tolerance))?;
             sums[1] += start.elapsed().as_secs_f64();
-            let [matrices, near] = setup(&kept);
-            sums[2] += matrices;
-            sums[3] += near;
+            for (sum, part) in sums[2..].iter_mut().zip(setup(&kept)) {
+                *sum += part;
+            }
             sums[4] += kept.statistics.iterations as f64;
             sums[5] += fresh.statistics.iterations as f64;
             let off = kept.bodies.iter().zip(&fresh.bodies).map(|(a, b)| {

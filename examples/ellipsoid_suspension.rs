@@ -147,7 +147,7 @@ fn summary(answer: &Answer) -> String {
         "{answer}: relative to the largest speed, {:.3}\n\
          {} unknowns, {} points, {} iterations, {} rounds of refinement\n\
          seconds: assemble {:.1}, factor {:.1}, near rows {:.1}, iterate {:.1}, \
-         error estimate {:.1}, coarser rounds {:.1}\n",
+         error estimate {:.1}, other {:.1}\n",
         answer.largest_speed,
         statistics.unknowns,
         statistics.points,
@@ -158,7 +158,7 @@ fn summary(answer: &Answer) -> String {
         t.near,
         t.iterate,
         t.estimate,
-        t.refine,
+        t.other,
     )
 }
 

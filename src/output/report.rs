@@ -114,8 +114,7 @@ pub struct Timings {
     pub iterate: f64,
     /// Evaluating the flow at the probes.
     pub evaluate: f64,
-    /// Everything else: choosing the resolution, coarser solutions, and what the error is estimated
-    /// from.
+    /// Everything else: choosing resolutions, and estimating the error of every round.
     pub estimate: f64,
 }
 

@@ -43,7 +43,7 @@ pub(super) fn report(
             factor: t.factor,
             iterate: t.iterate,
             evaluate: t.evaluate,
-            estimate: t.estimate + t.refine,
+            estimate: t.estimate + t.other,
         },
     })
 }

@@ -95,13 +95,13 @@ pub struct Statistics {
     pub near_bytes: usize,
     /// Shapes and resolutions that the last solution needed the factors of.
     pub classes: usize,
-    /// Solutions, each finer than the one before; the last one's stages have their own times.
+    /// Solutions, each finer than the one before.
     pub rounds: usize,
-    /// How long things took.
+    /// How long things took, in all rounds together.
     pub timings: Timings,
 }
 
-/// Wall-clock seconds; all but `sum` add up to the whole.
+/// Wall-clock seconds of all rounds; all but `sum` add up to the whole.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Timings {
@@ -117,10 +117,10 @@ pub struct Timings {
     pub sum: f64,
     /// Evaluating the flow at the probes.
     pub evaluate: f64,
-    /// Estimating the error.
+    /// Estimating the error of every round.
     pub estimate: f64,
-    /// Coarser solutions before the last one, and the choice of resolutions.
-    pub refine: f64,
+    /// The rest: gaps, the choice of resolutions, what is freed.
+    pub other: f64,
 }
 
 impl Answer {

@@ -20,7 +20,7 @@ use super::iteration::Iteration;
 use super::memory::{self, needed_memory};
 use super::options::Options;
 use super::resolution::{bisected, refined};
-use super::solution::{Solution, Start};
+use super::solution::{Seconds, Solution, Start};
 use super::sums::Operators;
 use super::suspension::Suspension;
 use super::tolerances::Tolerances;
@@ -81,12 +81,15 @@ pub(crate) struct Round {
     pub seconds: f64,
 }
 
-/// Iterations and products made.
+/// What all rounds together took.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Work {
     pub iterations: usize,
     pub products: usize,
     pub rounds: usize,
+    /// Wall clock of the solutions, and of estimating their errors.
+    pub solving: Seconds,
+    pub estimating: f64,
 }
 
 impl Work {
@@ -96,6 +99,8 @@ impl Work {
         let solutions = [Some(&round.solution), finer].into_iter().flatten();
         let more = Self {
             rounds: self.rounds + 1,
+            solving: self.solving + round.solution.seconds,
+            estimating: self.estimating + round.seconds,
             ..self
         };
         solutions.fold(more, |work, solution| Self {

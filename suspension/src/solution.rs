@@ -1,5 +1,6 @@
 //! Densities and motions, and how an earlier solution starts the next one.
 
+use std::ops::Add;
 use std::sync::Arc;
 
 use bodies_of_revolution::{Frame, RigidMotion, Shape, Wrench};
@@ -50,6 +51,20 @@ pub(crate) struct Seconds {
     pub iterate: f64,
     /// Of that, the sums over points.
     pub sum: f64,
+}
+
+impl Add for Seconds {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            assemble: self.assemble + other.assemble,
+            factor: self.factor + other.factor,
+            near: self.near + other.near,
+            iterate: self.iterate + other.iterate,
+            sum: self.sum + other.sum,
+        }
+    }
 }
 
 /// What the next solution starts from: the unknowns, in the frames of their bodies.

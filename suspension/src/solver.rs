@@ -1,7 +1,6 @@
 //! The solver: answers any number of questions about the same shapes.
 
 use std::sync::Arc;
-
 use std::time::Instant;
 
 use stokes_body::dirichlet::Formulation;
@@ -17,7 +16,7 @@ use super::error::SuspensionError;
 use super::memory;
 use super::motion::{Component, Mixed, Motion};
 use super::options::{Accuracy, Options};
-use super::refine::{Converged, Round, Rounds};
+use super::refine::{Converged, Round, Rounds, Work};
 use super::resolution::{first, uniform};
 use super::solution::{Solution, Start};
 use super::solve_error::SolveError;
@@ -163,14 +162,10 @@ impl Solver {
         } = rounds.converge(kinds, assembly, start)?;
         self.remember(&assembly.all_classes());
         self.assembly = Some(assembly);
-        let mut answer = answer(&rounds, best)?;
-        let statistics = &mut answer.statistics;
-        statistics.iterations = work.iterations;
-        statistics.products = work.products;
-        statistics.rounds = work.rounds;
-        let t = &mut statistics.timings;
-        let own = t.assemble + t.factor + t.near + t.iterate + t.evaluate + t.estimate;
-        t.refine = (begin.elapsed().as_secs_f64() - own).max(0.0);
+        let mut answer = answer(&rounds, best, work)?;
+        let t = &mut answer.statistics.timings;
+        let named = t.assemble + t.factor + t.near + t.iterate + t.evaluate + t.estimate;
+        t.other = (begin.elapsed().as_secs_f64() - named).max(0.0);
         Ok(answer)
     }
 
@@ -311,7 +306,7 @@ fn for_viscosity_one(asked: &Suspension) -> Suspension {
 }
 
 /// The answer of the best round, in the units of the question.
-fn answer(rounds: &Rounds<'_>, best: Round) -> Result<Answer, SuspensionError> {
+fn answer(rounds: &Rounds<'_>, best: Round, work: Work) -> Result<Answer, SuspensionError> {
     let Round {
         solution,
         probes,
@@ -319,7 +314,7 @@ fn answer(rounds: &Rounds<'_>, best: Round) -> Result<Answer, SuspensionError> {
         misses,
         error_estimate,
         speed,
-        seconds: estimate,
+        seconds: _,
     } = best;
     let boundary_error = |body: usize| misses.as_ref().map(|misses| misses[body].largest);
     let evaluation = Tolerances::new(rounds.tolerance, None).evaluation;
@@ -335,7 +330,7 @@ fn answer(rounds: &Rounds<'_>, best: Round) -> Result<Answer, SuspensionError> {
         flow: rounds.flow(&solution, speed, evaluation),
         probes,
     });
-    let seconds = solution.seconds;
+    let seconds = work.solving;
     Ok(Answer {
         bodies: bodies_of(rounds, &solution, &boundary_error),
         probes,
@@ -345,9 +340,9 @@ fn answer(rounds: &Rounds<'_>, best: Round) -> Result<Answer, SuspensionError> {
         tolerance: rounds.wanted,
         largest_speed: speed,
         statistics: Statistics {
-            iterations: 0,
-            products: 0,
-            rounds: 0,
+            iterations: work.iterations,
+            products: work.products,
+            rounds: work.rounds,
             unknowns: solution.unknowns,
             points: solution.points,
             near_points: solution.near_points,
@@ -360,8 +355,8 @@ fn answer(rounds: &Rounds<'_>, best: Round) -> Result<Answer, SuspensionError> {
                 iterate: seconds.iterate,
                 sum: seconds.sum,
                 evaluate,
-                estimate,
-                refine: 0.0,
+                estimate: work.estimating,
+                other: 0.0,
             },
             iteration: solution.iteration.clone(),
         },

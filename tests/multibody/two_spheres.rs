@@ -145,7 +145,7 @@ fn solved(row: &Row, axes: [Unit<Vector3<f64>>; 2], kept: bool, tolerance: f64) 
         resolution.panels.len(),
         resolution.modes,
         answer.statistics.iteration.iterations,
-        answer.statistics.timings.refine + answer.statistics.timings.estimate,
+        answer.statistics.timings.iterate + answer.statistics.timings.estimate,
     );
     found
 }

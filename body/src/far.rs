@@ -6,15 +6,14 @@
 
 use std::f64::consts::PI;
 use std::ops::Range;
-use std::sync::Arc;
 
 use nalgebra::Vector3;
 use num_complex::Complex64;
 use panel_quadrature::QuadratureError;
-use rustfft::{Fft, FftPlanner};
 
 use super::densities::Densities;
 use super::discretization::Discretization;
+use super::fft;
 use super::linear_flow::LAST_MODE;
 use super::near::{bend, bernstein};
 use super::surface::azimuths;
@@ -168,7 +167,7 @@ impl Separation {
 /// The densities on so many azimuths of every node.
 fn sample(discretization: &Discretization, densities: &Densities, count: usize) -> SurfacePoints {
     let nodes = discretization.nodes();
-    let fft: Arc<dyn Fft<f64>> = FftPlanner::new().plan_fft_inverse(count);
+    let fft = fft::inverse(count);
     let mut ring = vec![Complex64::default(); count];
     let mut components = vec![[0.0; 6]; count];
     let mut points = SurfacePoints::with_capacity(nodes.len() * count);

@@ -32,6 +32,7 @@ pub mod discretization;
 pub mod error;
 pub mod factors;
 pub mod far;
+mod fft;
 pub mod flow;
 pub mod influence;
 pub mod kernel;

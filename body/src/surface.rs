@@ -4,16 +4,15 @@
 //! are cylindrical.
 
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 use bodies_of_revolution::Meridian;
 use nalgebra::{Point3, UnitQuaternion, Vector3};
 use num_complex::Complex64;
 use panel_quadrature::QuadratureError;
 use rayon::slice::ParallelSliceMut;
-use rustfft::{Fft, FftPlanner};
 
 use super::discretization::{Discretization, Node};
+use super::fft;
 
 /// Modes of a real vector field at the nodes of a generating curve.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,7 +98,7 @@ impl SurfaceModes {
         [count, halves]: [usize; 2],
         mut value: impl FnMut(usize, [f64; 2]) -> Vector3<f64>,
     ) -> Self {
-        let fft: Arc<dyn Fft<f64>> = FftPlanner::new().plan_fft_forward(count);
+        let fft = fft::forward(count);
         let mut modes = Self::zero(n_max, nodes);
         let mut rings = [(); 3].map(|()| vec![Complex64::default(); count]);
         let offset = PI * halves as f64 / count as f64;

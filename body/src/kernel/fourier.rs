@@ -12,10 +12,11 @@ use std::sync::Arc;
 
 use num_complex::Complex64;
 use pulp::Simd;
-use rustfft::{Fft, FftPlanner};
+use rustfft::Fft;
 
 use super::invariant::{Kernel, Parity};
 use super::pair::Pair;
+use crate::fft;
 use f64_lanes::{Lanes, padded};
 
 /// Samples and transforms for one number of modes.
@@ -70,7 +71,7 @@ impl Fourier {
                 .map(|k| 2.0 * (0.5 * t(k)).sin().powi(2))
                 .collect(),
             sin: (0..half).map(|k| t(k).sin()).collect(),
-            fft: FftPlanner::new().plan_fft_forward(count),
+            fft: fft::forward(count),
         }
     }
 

@@ -11,7 +11,7 @@
 //! | [`mobility`] | bodies that are free to move |
 //! | [`discretization`] | panels and nodes on the generating curve |
 //! | [`matrix`] | modal Nyström matrices |
-//! | [`surface`] | vector fields on the surface and their modes |
+//! | [`surface`], `fft` | vector fields on the surface and their modes |
 //! | [`factors`] | factors of the modal matrices, which belong to the shape |
 //! | [`layers`] | the layer potentials that make up a flow |
 //! | [`flow`] | velocity, pressure and stress at any point |

@@ -19,8 +19,8 @@ pub(crate) struct LayerPoints {
 /// into the laboratory, are multiplied by to be a Stokeslet and a stresslet.
 ///
 /// Shares of the surface grow with the square of the scale, and a single layer's density with the
-/// inverse of the scale. This is the place where the sign is turned: a stresslet of the sum is minus
-/// our double layer.
+/// inverse of the scale. This is the place where the sign is turned: a stresslet of the sum is
+/// minus our double layer.
 pub(crate) fn factors_of_layers(frame: &Frame) -> [f64; 2] {
     let scale = frame.scale();
     [scale, -scale * scale]

@@ -1,6 +1,7 @@
 //! How accurate the answer must be, or how finely the shapes are cut.
 
 use stokes_body::resolution::matrix_entries;
+use stokes_suspension::default_memory;
 
 use super::CaseError;
 use super::node::Node;
@@ -12,9 +13,6 @@ pub const SMALLEST_TOLERANCE: f64 = 1e-14;
 pub const MOST_PANELS: usize = 1000;
 /// Most azimuthal modes.
 pub const MOST_MODES: usize = 1000;
-/// Most memory, in GiB, that panels, order and modes by hand may ask for, the solution that checks
-/// them included.
-const MOST_MEMORY: f64 = 16.0;
 
 /// What `[accuracy]` asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,11 +90,17 @@ fn read_by_hand(section: &Section<'_>) -> Result<Accuracy, CaseError> {
         .filter(|order| [10, 16].contains(order))
         .ok_or_else(|| order_node.expected("10 or 16"))?;
     let modes = modes_node.integer("a number of modes", 1..=MOST_MODES)?;
-    let memory = matrix_entries(panels, order, modes) * 8.0 / f64::from(1 << 30);
-    if memory > MOST_MEMORY {
+    // The solver counts what all bodies need. What one alone cannot have is refused here, where the
+    // line can be named.
+    let [needed, most] = [
+        8.0 * matrix_entries(panels, order, modes),
+        default_memory() as f64,
+    ]
+    .map(|bytes| bytes / f64::from(1 << 30));
+    if needed > most {
         return Err(panels_node.error(format!(
-            "panels = {panels}, order = {order}, modes = {modes} would need {memory:.0} GiB of memory: \
-             expected a choice that needs at most {MOST_MEMORY} GiB"
+            "panels = {panels}, order = {order}, modes = {modes} would need {needed:.1} GiB of memory: \
+             expected a choice that needs at most {most:.1} GiB"
         )));
     }
     Ok(Accuracy::ByHand {

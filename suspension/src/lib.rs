@@ -71,6 +71,7 @@ pub use grand::GrandMatrix;
 pub use inexact_krylov::{Method, Stop};
 pub use interactions::InteractionError;
 pub use iteration::Iteration;
+pub use memory::default_memory;
 pub use motion::{Component, Mixed, Motion};
 pub use options::{Accuracy, Levels, Options};
 pub use slip::Slip;

@@ -74,8 +74,9 @@ fn gibibytes(bytes: usize) -> f64 {
     bytes as f64 / f64::from(1 << 30)
 }
 
-/// Seven tenths of what the machine has.
-fn default_memory() -> usize {
+/// Bytes that a solver may take where its [`Options::memory`] says nothing: seven tenths of what
+/// the machine has (feature `machine-memory`), or of 8 GiB.
+pub fn default_memory() -> usize {
     static MEMORY: OnceLock<usize> = OnceLock::new();
     *MEMORY.get_or_init(|| (total_memory() as f64 * 0.7) as usize)
 }

@@ -14,6 +14,9 @@ pub const MOST_PANELS: usize = 1000;
 /// Most azimuthal modes.
 pub const MOST_MODES: usize = 1000;
 
+/// Bytes.
+const GIB: f64 = (1u64 << 30) as f64;
+
 /// What `[accuracy]` asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Accuracy {
@@ -45,8 +48,11 @@ pub(super) struct AccuracyOptions {
     pub(super) tolerance_by_hand: Option<f64>,
 }
 
-/// Reads `[accuracy]`.
-pub(super) fn read_accuracy(node: Node<'_>) -> Result<AccuracyOptions, CaseError> {
+/// Reads `[accuracy]`; `memory` is what `[solver]` says of it, in GiB.
+pub(super) fn read_accuracy(
+    node: Node<'_>,
+    memory: Option<f64>,
+) -> Result<AccuracyOptions, CaseError> {
     let section = Section::new(node, &["tolerance", "panels", "order", "modes"])?;
     if section.is_empty() {
         return Err(section
@@ -62,7 +68,7 @@ pub(super) fn read_accuracy(node: Node<'_>) -> Result<AccuracyOptions, CaseError
         });
     }
     Ok(AccuracyOptions {
-        accuracy: read_by_hand(&section)?,
+        accuracy: read_by_hand(&section, memory)?,
         tolerance_by_hand: tolerance,
     })
 }
@@ -78,7 +84,7 @@ pub(super) fn read_tolerance(node: &Node<'_>) -> Result<f64, CaseError> {
     }
 }
 
-fn read_by_hand(section: &Section<'_>) -> Result<Accuracy, CaseError> {
+fn read_by_hand(section: &Section<'_>, memory: Option<f64>) -> Result<Accuracy, CaseError> {
     let all = "all three of panels, order and modes";
     let panels_node = section.required("panels", all)?;
     let order_node = section.required("order", all)?;
@@ -92,11 +98,8 @@ fn read_by_hand(section: &Section<'_>) -> Result<Accuracy, CaseError> {
     let modes = modes_node.integer("a number of modes", 1..=MOST_MODES)?;
     // The solver counts what all bodies need. What one alone cannot have is refused here, where the
     // line can be named.
-    let [needed, most] = [
-        8.0 * matrix_entries(panels, order, modes),
-        default_memory() as f64,
-    ]
-    .map(|bytes| bytes / f64::from(1 << 30));
+    let needed = 8.0 * matrix_entries(panels, order, modes) / GIB;
+    let most = memory.unwrap_or_else(|| default_memory() as f64 / GIB);
     if needed > most {
         return Err(panels_node.error(format!(
             "panels = {panels}, order = {order}, modes = {modes} would need {needed:.1} GiB of memory: \

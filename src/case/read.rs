@@ -63,10 +63,11 @@ impl Case {
     fn from_root(root: &Section<'_>, path: &Path) -> Result<Self, CaseError> {
         let missing = |what| root.node.source.error(None, what);
         let viscosity = root.read("viscosity", |node| node.positive("a viscosity"))?;
-        let accuracy = root
-            .read("accuracy", |node| read_accuracy(node.clone()))?
-            .unwrap_or_default();
         let solver = root.read("solver", |node| read_solver(node.clone()))?;
+        let memory = solver.as_ref().and_then(|solver| solver.memory);
+        let accuracy = root
+            .read("accuracy", |node| read_accuracy(node.clone(), memory))?
+            .unwrap_or_default();
         let background = root.read("background", |node| {
             Ok(node.located(read_background(node.clone())?))
         })?;

@@ -56,6 +56,11 @@ impl BodyFlow {
     pub fn size(&self) -> f64 {
         self.frame.scale() * self.on().size()
     }
+
+    /// The body's shape.
+    pub fn shape(&self) -> &Shape {
+        self.on().curve()
+    }
 }
 
 /// Velocity, pressure, velocity gradient and stress at a point, in the laboratory.
@@ -512,16 +517,7 @@ impl Flow {
         }
         Ok(())
     }
-}
 
-impl BodyFlow {
-    /// The body's shape.
-    pub fn shape(&self) -> &Shape {
-        self.on().curve()
-    }
-}
-
-impl Flow {
     /// Room for the stress on every surface, made when it is first wanted.
     pub(crate) fn stresses(&self) -> &[OnceLock<SurfaceStress>] {
         &self.0.stresses

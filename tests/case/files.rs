@@ -226,6 +226,23 @@ fn a_tolerance_by_hand_is_not_promised() {
 }
 
 #[test]
+fn panels_by_hand_may_take_the_memory_that_the_solver_may() {
+    let read = |panels: usize, memory: f64| {
+        let text = format!(
+            "shapes.a = {{ kind = 'sphere', radius = 1 }}\nbodies = [{{ shape = 'a' }}]\n\
+             [accuracy]\npanels = {panels}\norder = 16\nmodes = 4\n[solver]\nmemory = {memory}"
+        );
+        Case::parse(&text, "memory.toml").map_err(|error| error.to_string())
+    };
+    // The solution that checks it has 8 * 20 * 3 unknowns in 13 modes: 0.022 GiB.
+    assert!(read(8, 0.03).is_ok());
+    let error = read(8, 0.01).expect_err("too little memory");
+    assert!(error.starts_with("memory.toml:4:"), "{error}");
+    // 31.4 GiB: more than most machines have, but it is the user who says so.
+    assert!(read(300, 40.0).is_ok());
+}
+
+#[test]
 fn what_is_seldom_meant_is_warned_of() {
     let warnings = |lines: &str| {
         let text = format!(

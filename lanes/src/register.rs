@@ -70,7 +70,9 @@ impl<S: Simd> Lanes<S> {
     #[inline(always)]
     pub fn select_less(self, bound: Self, yes: Self, no: Self) -> Self {
         let mask = self.0.less_than_f64s(self.1, bound.1);
-        Self(self.0, self.0.select_f64s(mask, yes.1, no.1))
+        // `select_f64s` would do, but is a call where the compiler does not inline it.
+        let chosen = (self.0).select_u64s(mask, pulp::cast(yes.1), pulp::cast(no.1));
+        Self(self.0, pulp::cast(chosen))
     }
 }
 
@@ -118,6 +120,7 @@ impl<S: Simd> Neg for Lanes<S> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self(self.0, self.0.neg_f64s(self.1))
+        // `neg_f64s` would do, but is a call where the compiler does not inline it.
+        Self::splat(self.0, -0.0) - self
     }
 }

@@ -14,6 +14,7 @@
 //! single layers that make $u_j$: so $G = 1 + R^{-1} K$ with a symmetric $K$, which a few points on
 //! each body give well enough.
 
+use std::cmp::Ordering;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -224,31 +225,36 @@ impl Coarse {
             .iter()
             .map(|(body, tractions)| InLab::new(&members[*body], tractions))
             .collect();
-        let size = 6 * bodies.len();
-        // Row after row, which is the transposed matrix column after column; a body's six rows are
-        // one task.
+        let count = bodies.len();
+        // K is symmetric: of the bodies before each.
+        let before: Vec<Vec<Matrix6<f64>>> = (0..count)
+            .into_par_iter()
+            .map(|i| {
+                let of_pair = |other| energy(&in_lab[i], other);
+                in_lab[..i].iter().map(of_pair).collect()
+            })
+            .collect();
+        let size = 6 * count;
+        // Row after row, which is the transposed matrix column after column.
         let mut rows = vec![0.0; size * size];
-        rows.par_chunks_mut(6 * size)
-            .enumerate()
-            .for_each(|(i, rows)| {
-                let (body, tractions) = &bodies[i];
-                let felt = match &constraints[*body] {
-                    Some(constraint) => constraint.on_motions() * tractions.mobility,
-                    None => tractions.mobility,
+        for (i, (rows, (body, tractions))) in rows.chunks_mut(6 * size).zip(&bodies).enumerate() {
+            let felt = match &constraints[*body] {
+                Some(constraint) => constraint.on_motions() * tractions.mobility,
+                None => tractions.mobility,
+            };
+            for (j, other) in in_lab.iter().enumerate() {
+                let block = match i.cmp(&j) {
+                    Ordering::Less => other.scale * felt * before[j][i].transpose(),
+                    Ordering::Equal => Matrix6::identity(),
+                    Ordering::Greater => other.scale * felt * before[i][j],
                 };
-                for (j, other) in in_lab.iter().enumerate() {
-                    let block = if i == j {
-                        Matrix6::identity()
-                    } else {
-                        other.scale * felt * energy(&in_lab[i], other)
-                    };
-                    for (k, row) in rows.chunks_mut(size).enumerate() {
-                        for l in 0..6 {
-                            row[6 * j + l] = block[(k, l)];
-                        }
+                for (k, row) in rows.chunks_mut(size).enumerate() {
+                    for l in 0..6 {
+                        row[6 * j + l] = block[(k, l)];
                     }
                 }
-            });
+            }
+        }
         let permutation = factor_in_place(&mut rows, size);
         Some(Self {
             bodies,

@@ -15,7 +15,7 @@ use super::densities::Densities;
 use super::discretization::Discretization;
 use super::fft;
 use super::linear_flow::LAST_MODE;
-use super::near::{bend, bernstein};
+use super::near::bend;
 use super::surface::azimuths;
 use crate::kernel::{DENSITIES, SurfacePoint, SurfacePoints};
 use bodies_of_revolution::Meridian;
@@ -43,8 +43,20 @@ pub(super) struct FarFlow {
 pub struct Separation {
     /// $\chi - 1$ of the rings.
     h: f64,
-    /// The parameter of the Bernstein ellipse around each panel.
-    rho: Vec<f64>,
+    panels: Vec<PanelSeparation>,
+}
+
+/// From where on a target is far enough from one panel.
+#[derive(Debug)]
+struct PanelSeparation {
+    /// Radius and height of the panel's ends, and the least sum of a target's distances from them:
+    /// what makes the Bernstein ellipse large enough.
+    ends: [[f64; 2]; 2],
+    sum: f64,
+    /// A circle in the half plane that all nodes lie in, and their largest radius.
+    center: [f64; 2],
+    radius: f64,
+    widest: f64,
 }
 
 impl FarFlow {
@@ -71,8 +83,9 @@ impl FarFlow {
     }
 
     /// The separation for an error below `tolerance` relative to the densities.
-    pub fn separation(&self, tolerance: f64) -> Separation {
+    pub fn separation(&self, discretization: &Discretization, tolerance: f64) -> Separation {
         Separation::new(
+            discretization,
             tolerance,
             [self.order, self.azimuths],
             &self.mode_decay,
@@ -88,6 +101,7 @@ impl Separation {
     /// `mode_decay` and `panel_decay` are logarithms of the density's modes, and of its Legendre
     /// coefficients on each panel, relative to the largest.
     fn new<'d>(
+        discretization: &Discretization,
         tolerance: f64,
         [order, azimuths]: [usize; 2],
         mode_decay: &[f64],
@@ -105,9 +119,13 @@ impl Separation {
                 .map(|(k, x)| (x + digits) / (2 * order - k) as f64)
                 .fold(0.0, f64::max)
         };
+        let panels = panel_decay.enumerate().map(|(panel, decay)| {
+            let log_rho = log_rho(decay);
+            PanelSeparation::new(discretization, panel, log_rho)
+        });
         Self {
             h: 2.0 * (0.5 * xi).sinh().powi(2),
-            rho: panel_decay.map(|decay| log_rho(decay).exp()).collect(),
+            panels: panels.collect(),
         }
     }
 
@@ -132,6 +150,7 @@ impl Separation {
         let along = steady(discretization.order(), 0);
         let panels = discretization.panels().len();
         Self::new(
+            discretization,
             tolerance,
             points,
             &steady(n_max + 1, LAST_MODE),
@@ -141,27 +160,58 @@ impl Separation {
 
     /// The largest distance from a sphere of the given radius, which the body fits in, at which a
     /// target may be too close for the points.
-    pub fn reach(&self, discretization: &Discretization, radius: f64) -> f64 {
+    pub fn reach(&self, radius: f64) -> f64 {
         // On rings: d^2 < 2 h r (r + d).
         let hr = self.h * radius;
         let around = hr + (hr * hr + 2.0 * hr * radius).sqrt();
-        // On panels: the sum of the distances from both ends is at most this; a bend only makes the
-        // ellipse narrower.
-        let along = self.rho.iter().enumerate().map(|(panel, rho)| {
-            let rho = rho.powf(bend(discretization, panel));
-            0.25 * (rho + 1.0 / rho) * discretization.arc_length(panel)
-        });
+        // On panels: at least half the sum of the distances from both ends.
+        let along = self.panels.iter().map(|panel| 0.5 * panel.sum);
         along.fold(around, f64::max)
     }
 
     /// Whether the points resolve what a panel does to a target.
     pub fn is_kept(&self, discretization: &Discretization, target: Meridian, panel: usize) -> bool {
-        let around = discretization.nodes_of(panel).iter().all(|node| {
+        let bounds = &self.panels[panel];
+        let at = [target.r, target.z];
+        let [first, last] = bounds.ends.map(|end| distance(at, end));
+        if first + last < bounds.sum {
+            return false;
+        }
+        // Most targets are far from all nodes together.
+        let gap = distance(at, bounds.center) - bounds.radius;
+        if gap > 0.0 && gap * gap >= self.h * 2.0 * target.r * bounds.widest {
+            return true;
+        }
+        discretization.nodes_of(panel).iter().all(|node| {
             let square = (target.r - node.r).powi(2) + (target.z - node.z).powi(2);
             square >= self.h * 2.0 * target.r * node.r
-        });
-        around && bernstein(discretization, [target.r, target.z], panel) >= self.rho[panel]
+        })
     }
+}
+
+impl PanelSeparation {
+    /// For an ellipse whose parameter has this logarithm, a bend counted.
+    fn new(discretization: &Discretization, panel: usize, log_rho: f64) -> Self {
+        let ends = discretization.ends(panel);
+        let center = [0, 1].map(|k| 0.5 * (ends[0][k] + ends[1][k]));
+        let nodes = discretization.nodes_of(panel);
+        let from_center = nodes.iter().map(|node| distance([node.r, node.z], center));
+        // The sum of the distances, in half lengths, is rho + 1/rho.
+        let rho = log_rho * bend(discretization, panel);
+        Self {
+            ends,
+            sum: discretization.arc_length(panel) * rho.cosh(),
+            center,
+            radius: from_center.fold(0.0, f64::max),
+            widest: nodes.iter().map(|node| node.r).fold(0.0, f64::max),
+        }
+    }
+}
+
+/// In the half plane. A square root of squares: `hypot` takes several times as long, and here no
+/// square of interest overflows.
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)).sqrt()
 }
 
 /// The densities on so many azimuths of every node.

@@ -209,7 +209,7 @@ impl Flow {
         tolerance: f64,
     ) -> Result<Vec<(usize, FlowGradientAt)>, FlowError> {
         let far = self.far()?;
-        let separation = far.separation(tolerance);
+        let separation = far.separation(&self.discretization, tolerance);
         let is_far = self.are_far(targets, &separation);
         self.evaluate_close::<GRADIENT>(targets, &is_far, far, &separation, Rest::Points)
     }
@@ -232,8 +232,8 @@ impl Flow {
     /// anything.
     pub fn correction_reach(&self, tolerance: f64) -> Result<f64, FlowError> {
         let size = self.discretization.size();
-        let separation = self.far()?.separation(tolerance);
-        Ok(size + separation.reach(&self.discretization, size))
+        let separation = self.far()?.separation(&self.discretization, tolerance);
+        Ok(size + separation.reach(size))
     }
 
     /// The densities as points, times their shares of the surface.
@@ -290,7 +290,7 @@ impl Flow {
             return Err(FlowError::NotFinite { index });
         }
         let far = self.far()?;
-        let separation = far.separation(tolerance);
+        let separation = far.separation(&self.discretization, tolerance);
         let is_far = self.are_far(targets, &separation);
         let mut found: Vec<FlowGradientAt> = (targets.par_iter().zip(&is_far))
             .map(|(target, &is_far)| {

@@ -111,7 +111,7 @@ pub struct Timings {
     pub factor: f64,
     /// Finding points near other bodies, and what is needed for them.
     pub near: f64,
-    /// Iterating, or substituting.
+    /// Making right-hand sides, and iterating or substituting.
     pub iterate: f64,
     /// Of that, summing over points.
     pub sum: f64,

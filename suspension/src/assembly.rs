@@ -202,9 +202,7 @@ impl Assembly {
             self.keep_places();
         }
         let imposed = self.imposed(suspension)?;
-        let (imposed_fields, data) = self.right_hand_side(bodies, &imposed)?;
-        seconds.near += start.elapsed().as_secs_f64();
-        let start = Instant::now();
+        let (imposed_fields, data) = self.right_hand_side(bodies, &imposed, &mut seconds)?;
         let Iterated {
             unknown,
             residual,
@@ -295,7 +293,7 @@ impl Assembly {
         let options = within_memory(options, rest, self.layout.len());
         let system = &mut coupling.system;
         let found = iterate(system, data, first, self.tolerances, &options, progress)?;
-        seconds.sum = system.interactions.seconds_of_sums - summed;
+        seconds.sum += system.interactions.seconds_of_sums - summed;
         Ok(found)
     }
 
@@ -361,6 +359,7 @@ impl Assembly {
         &mut self,
         bodies: &[Body],
         imposed: &[Imposed],
+        seconds: &mut Seconds,
     ) -> Result<(Vec<f64>, Vec<f64>), SuspensionError> {
         let mut data = vec![0.0; self.layout.len()];
         let mut forced = vec![0.0; self.layout.len()];
@@ -377,7 +376,7 @@ impl Assembly {
             copy_modes(&mut data[self.layout.of(i)], &velocity);
         }
         if forced.iter().any(|&x| x != 0.0) && self.coupling.is_some() {
-            let velocities = self.velocities_of_singles(bodies, &forced)?;
+            let velocities = self.velocities_of_singles(bodies, &forced, seconds)?;
             for (data, velocity) in data.iter_mut().zip(&velocities) {
                 *data -= velocity;
             }
@@ -398,36 +397,38 @@ impl Assembly {
         &mut self,
         bodies: &[Body],
         forced: &[f64],
+        seconds: &mut Seconds,
     ) -> Result<Vec<f64>, InteractionError> {
         let mut velocities = vec![0.0; forced.len()];
-        let kept = self.coupling.as_mut().and_then(|it| it.singles.take());
-        let mut singles = match kept {
-            Some(singles) => singles,
-            None => self.single_layers(bodies)?,
+        let Some(coupling) = &mut self.coupling else {
+            return Ok(velocities);
         };
+        let mut singles = match coupling.singles.take() {
+            Some(singles) => singles,
+            None => {
+                let tables: Vec<Arc<Tables>> = (self.classes.all().iter())
+                    .map(|class| match self.keep {
+                        Keep::Nothing => Arc::new(class.new_single_layer_tables()),
+                        _ => class.single_layer_tables().clone(),
+                    })
+                    .collect();
+                let members = members(bodies, |body| tables[self.classes.index_of(body)].clone());
+                let uses = match self.keep {
+                    Keep::Nothing => Use::Once,
+                    _ => Use::Often { memory: 0 },
+                };
+                let doubles = &coupling.system.interactions;
+                doubles.of_layers(members, uses, self.operators.clone())?
+            }
+        };
+        let summed = singles.seconds_of_sums;
         singles.add_velocities(forced, &mut velocities, self.tolerances.product)?;
-        if let (Some(coupling), true) = (&mut self.coupling, self.solved > 1) {
+        seconds.sum += singles.seconds_of_sums - summed;
+        if self.solved > 1 {
             singles.free_buffers();
             coupling.singles = Some(singles);
         }
         Ok(velocities)
-    }
-
-    /// The interactions of single layers on the same points.
-    fn single_layers(&self, bodies: &[Body]) -> Result<Interactions, InteractionError> {
-        let tables: Vec<Arc<Tables>> = (self.classes.all().iter())
-            .map(|class| match self.keep {
-                Keep::Nothing => Arc::new(class.new_single_layer_tables()),
-                _ => class.single_layer_tables().clone(),
-            })
-            .collect();
-        let members = members(bodies, |body| tables[self.classes.index_of(body)].clone());
-        let operators = self.operators.clone();
-        let uses = match self.keep {
-            Keep::Nothing => Use::Once,
-            _ => Use::Often { memory: 0 },
-        };
-        Interactions::new(members, self.tolerances.product, uses, operators, &|_| ())
     }
 }
 

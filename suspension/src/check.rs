@@ -222,11 +222,12 @@ impl Checker {
                 let mine = SurfaceModes::from_scaled(&self.of(body).discretization, mine);
                 *sum = std::mem::replace(sum, SurfaceModes::zero(0, 0)).plus(1.0, &mine);
             }
-            if let Keep::Places { .. } = self.keep {
-                interactions.free_buffers();
-                self.interactions[part as usize] = Some(interactions);
-            }
+            interactions.free_buffers();
+            self.interactions[part as usize] = Some(interactions);
             progress.advance(bodies.len() / Part::ALL.len());
+        }
+        if !matches!(self.keep, Keep::Places { .. }) {
+            self.interactions = Default::default();
         }
         Ok(sum)
     }
@@ -249,14 +250,11 @@ impl Checker {
                 memory: rows / Part::ALL.len(),
             },
         };
-        let operators = operators.clone();
-        Ok(Interactions::new(
-            members.collect(),
-            tolerance,
-            uses,
-            operators,
-            &|_| (),
-        )?)
+        let (members, operators) = (members.collect(), operators.clone());
+        Ok(match self.interactions.iter().flatten().next() {
+            Some(of_others) => of_others.of_layers(members, uses, operators)?,
+            None => Interactions::new(members, tolerance, uses, operators, &|_| ())?,
+        })
     }
 }
 

@@ -44,6 +44,16 @@ pub(crate) enum Use {
     },
 }
 
+impl Use {
+    /// Bytes for rows.
+    fn memory(self) -> usize {
+        match self {
+            Self::Once => 0,
+            Self::Often { memory } => memory,
+        }
+    }
+}
+
 /// The interactions of some bodies.
 pub(crate) struct Interactions {
     members: Vec<Member>,
@@ -54,6 +64,7 @@ pub(crate) struct Interactions {
     layers: LayerPoints,
     near: Near,
     uses: Use,
+    tolerance: f64,
     sums: Sums,
     /// Wall-clock seconds of all sums so far.
     pub seconds_of_sums: f64,
@@ -74,8 +85,6 @@ impl Interactions {
         operators: Operators,
         done: &(dyn Fn(usize) + Sync),
     ) -> Result<Self, InteractionError> {
-        let fields = Layout::new(members.iter().map(|m| m.tables.field_len()));
-        let points = Layout::new(members.iter().map(|m| m.tables.grid().len()));
         let at_points = |of: &(dyn Fn(&Member, usize) -> [f64; 3] + Sync)| -> Vec<[f64; 3]> {
             (members.par_iter())
                 .flat_map_iter(|member| {
@@ -91,6 +100,35 @@ impl Interactions {
             let normal = member.tables.grid().normal(place);
             member.frame.vector_to_lab(normal).into()
         });
+        let near = Near::new(&members, tolerance, uses.memory(), done)?;
+        let on = [positions, normals];
+        Ok(Self::at(on, near, members, tolerance, uses, operators))
+    }
+
+    /// The interactions of other layers, those of `members`, on the same points: what is near needs
+    /// not be found again.
+    ///
+    /// # Errors
+    /// If a quadrature rule is missing.
+    pub fn of_layers(
+        &self,
+        members: Vec<Member>,
+        uses: Use,
+        operators: Operators,
+    ) -> Result<Self, InteractionError> {
+        let near = self.near.of_layers(&members, uses.memory())?;
+        let on = [&self.layers.positions, &self.layers.normals].map(Clone::clone);
+        Ok(Self::at(on, near, members, self.tolerance, uses, operators))
+    }
+
+    fn at(
+        [positions, normals]: [Vec<[f64; 3]>; 2],
+        near: Near,
+        members: Vec<Member>,
+        tolerance: f64,
+        uses: Use,
+        operators: Operators,
+    ) -> Self {
         let single = members.iter().any(|m| m.tables.weights.single != 0.0);
         let double = members.iter().any(|m| m.tables.weights.double != 0.0);
         let singularities = match (single, double) {
@@ -98,12 +136,7 @@ impl Interactions {
             (true, false) => Singularities::Stokeslets,
             _ => Singularities::Stresslets,
         };
-        let memory = match uses {
-            Use::Once => 0,
-            Use::Often { memory } => memory,
-        };
-        let near = Near::new(&members, tolerance, memory, done)?;
-        Ok(Self {
+        Self {
             near,
             uses,
             batches: Batches::new(&members),
@@ -111,9 +144,10 @@ impl Interactions {
             strengths: Vec::new(),
             sums: Sums::new(operators, singularities, Output::Velocity, tolerance),
             seconds_of_sums: 0.0,
+            tolerance,
+            fields: Layout::new(members.iter().map(|m| m.tables.field_len())),
+            points: Layout::new(members.iter().map(|m| m.tables.grid().len())),
             members,
-            fields,
-            points,
             layers: LayerPoints {
                 positions,
                 normals,
@@ -121,7 +155,7 @@ impl Interactions {
                 stresslets: Vec::new(),
                 singularities,
             },
-        })
+        }
     }
 
     /// Where the bodies' modes are in a vector of all.

@@ -31,8 +31,6 @@ pub(crate) struct Visit {
     panels: Vec<u32>,
     /// The panels of all rings that are done with more points, and with which of the upsamplings.
     finer: Vec<(u32, usize)>,
-    /// The rows of all rings, or none if they are made each time.
-    rows: Option<Vec<f64>>,
 }
 
 /// Points at one radius and height about the other body's axis: they have the same rows. Bodies on
@@ -48,12 +46,20 @@ struct NearRing {
 /// Difference of radius and height, in units of the body's size, of points on one ring.
 const GRAIN: f64 = 1e-14;
 
-/// All that is near, body by body.
+/// All that is near, body by body. It is a matter of places and points: all layers on them share it.
 #[derive(Debug)]
-pub(crate) struct Near {
+struct Places {
     visits: Vec<Vec<Visit>>,
     /// Those upsamplings of each body that are used.
     upsampled: Vec<[Option<Arc<Upsampling>>; upsampling::LEVELS]>,
+}
+
+/// All that is near, and what layers of one kind do there.
+#[derive(Debug)]
+pub(crate) struct Near {
+    places: Arc<Places>,
+    /// The rows of each visit, or none if they are made each time.
+    rows: Vec<Vec<Option<Vec<f64>>>>,
     /// Bytes of the rows that are kept.
     pub stored: usize,
 }
@@ -84,55 +90,56 @@ impl Near {
         memory: usize,
         done: &(dyn Fn(usize) + Sync),
     ) -> Result<Self, QuadratureError> {
-        let surroundings: Vec<Surrounding> = members
-            .par_iter()
-            .map(|member| Surrounding::new(member, tolerance))
-            .collect();
-        let neighbours = Neighbours::new((members.iter().zip(&surroundings)).map(
-            |(member, around)| Ball {
-                center: member.frame.center(),
-                radius: around.radius + around.reach,
-            },
-        ));
-        let mut visits: Vec<Vec<Visit>> = (0..members.len())
-            .into_par_iter()
-            .map(|body| visits(members, &surroundings, &neighbours, body))
-            .collect();
+        let places = Arc::new(Places::new(members, tolerance)?);
+        Self::at(places, members, memory, done)
+    }
+
+    /// The same for other layers on the same points.
+    ///
+    /// # Errors
+    /// If a quadrature rule is missing.
+    pub fn of_layers(&self, members: &[Member], memory: usize) -> Result<Self, QuadratureError> {
+        Self::at(self.places.clone(), members, memory, &|_| ())
+    }
+
+    fn at(
+        places: Arc<Places>,
+        members: &[Member],
+        memory: usize,
+        done: &(dyn Fn(usize) + Sync),
+    ) -> Result<Self, QuadratureError> {
         let mut stored = 0;
-        let mut upsampled = vec![[const { None }; upsampling::LEVELS]; members.len()];
-        for visit in visits.iter_mut().flatten() {
-            for &(_, level) in &visit.finer {
-                let used = &mut upsampled[visit.source][level];
-                if used.is_none() {
-                    *used = Some(members[visit.source].tables.upsampling(level)?);
-                }
-            }
-            let bytes = 8 * visit.len(members)?;
-            if stored + bytes <= memory {
-                stored += bytes;
-                visit.rows = Some(Vec::new());
-            }
-        }
-        let rows = |room: &mut Room, visits: &mut Vec<Visit>| {
+        let mut rows = Vec::with_capacity(places.visits.len());
+        for visits in &places.visits {
+            let mut of_body = Vec::with_capacity(visits.len());
             for visit in visits {
-                visit.fill(members, room)?;
+                let bytes = 8 * visit.len(members)?;
+                let is_kept = stored + bytes <= memory;
+                stored += if is_kept { bytes } else { 0 };
+                of_body.push(is_kept.then(Vec::new));
+            }
+            rows.push(of_body);
+        }
+        let fill = |room: &mut Room, (visits, rows): (&Vec<Visit>, &mut Vec<Option<Vec<f64>>>)| {
+            for (visit, rows) in visits.iter().zip(rows) {
+                if let Some(rows) = rows {
+                    visit.fill(members, room, rows)?;
+                }
             }
             done(1);
             Ok(())
         };
-        visits
-            .par_iter_mut()
-            .try_for_each_init(Room::default, rows)?;
+        (places.visits.par_iter().zip(&mut rows)).try_for_each_init(Room::default, fill)?;
         Ok(Self {
-            visits,
-            upsampled,
+            places,
+            rows,
             stored,
         })
     }
 
     /// The upsamplings of a body that are used.
     pub fn upsamplings(&self, body: usize) -> impl Iterator<Item = Option<&Upsampling>> {
-        self.upsampled[body].iter().map(Option::as_deref)
+        self.places.upsampled[body].iter().map(Option::as_deref)
     }
 
     /// Room for a body's density at its points, and at those of the upsamplings that are used.
@@ -158,12 +165,14 @@ impl Near {
         velocity: &mut [[f64; 3]],
     ) -> Result<(), QuadratureError> {
         let mut room = Room::default();
-        for visit in &self.visits[body] {
+        let places = &self.places;
+        for (visit, rows) in places.visits[body].iter().zip(&self.rows[body]) {
             visit.correct(
                 members,
+                rows.as_deref(),
                 field(visit.source),
                 &strengths[visit.source],
-                &self.upsampled[visit.source],
+                &places.upsampled[visit.source],
                 velocity,
                 &mut room,
             )?;
@@ -173,8 +182,37 @@ impl Near {
 
     /// Points that are near another body, counted once for each.
     pub fn points(&self) -> usize {
-        let visits = self.visits.iter().flatten();
+        let visits = self.places.visits.iter().flatten();
         visits.map(|visit| visit.points.len()).sum()
+    }
+}
+
+impl Places {
+    fn new(members: &[Member], tolerance: f64) -> Result<Self, QuadratureError> {
+        let surroundings: Vec<Surrounding> = members
+            .par_iter()
+            .map(|member| Surrounding::new(member, tolerance))
+            .collect();
+        let neighbours = Neighbours::new((members.iter().zip(&surroundings)).map(
+            |(member, around)| Ball {
+                center: member.frame.center(),
+                radius: around.radius + around.reach,
+            },
+        ));
+        let visits: Vec<Vec<Visit>> = (0..members.len())
+            .into_par_iter()
+            .map(|body| visits(members, &surroundings, &neighbours, body))
+            .collect();
+        let mut upsampled = vec![[const { None }; upsampling::LEVELS]; members.len()];
+        for visit in visits.iter().flatten() {
+            for &(_, level) in &visit.finer {
+                let used = &mut upsampled[visit.source][level];
+                if used.is_none() {
+                    *used = Some(members[visit.source].tables.upsampling(level)?);
+                }
+            }
+        }
+        Ok(Self { visits, upsampled })
     }
 }
 
@@ -204,7 +242,7 @@ impl Surrounding {
         let radius = tables.discretization.size();
         let scale = member.frame.scale();
         Self {
-            reach: scale * separation.reach(&tables.discretization, radius),
+            reach: scale * separation.reach(radius),
             radius: scale * radius,
             finer: finer.collect(),
             separation,
@@ -224,38 +262,33 @@ fn visits(
         center: member.frame.center(),
         radius: surroundings[body].radius,
     });
+    let grid = member.tables.grid();
+    let points: Vec<Point3<f64>> = (grid.places())
+        .map(|place| member.frame.point_to_lab(grid.position(place)))
+        .collect();
     let others = near.into_iter().filter(|&source| source != body);
-    let visits = others.map(|source| {
-        let around = &surroundings[source];
-        let beyond = around.radius + around.reach;
-        visit(member, source, &members[source], around, beyond)
-    });
+    let visits =
+        others.map(|source| visit(&points, source, &members[source], &surroundings[source]));
     visits.filter(|visit| !visit.points.is_empty()).collect()
 }
 
-fn visit(
-    member: &Member,
-    source: usize,
-    other: &Member,
-    around: &Surrounding,
-    beyond: f64,
-) -> Visit {
-    let grid = member.tables.grid();
+/// Those of some points in the laboratory that are near one body.
+fn visit(points: &[Point3<f64>], source: usize, other: &Member, around: &Surrounding) -> Visit {
     let discretization = &other.tables.discretization;
-    let beyond = beyond / other.frame.scale();
+    let panels = 0..discretization.panels().len();
+    let beyond = (around.radius + around.reach).powi(2);
     let grain = GRAIN * discretization.size();
     let mut near: Vec<([i64; 2], usize, Point3<f64>)> = Vec::new();
-    for (index, place) in grid.places().enumerate() {
-        let at = other
-            .frame
-            .point_to_body(member.frame.point_to_lab(grid.position(place)));
-        if at.coords.norm() <= beyond {
-            let seen = Meridian::of(&at);
-            near.push((
-                [seen.r, seen.z].map(|x| (x / grain).round() as i64),
-                index,
-                at,
-            ));
+    for (index, point) in points.iter().enumerate() {
+        if (point - other.frame.center()).norm_squared() > beyond {
+            continue;
+        }
+        let at = other.frame.point_to_body(*point);
+        let seen = Meridian::of(&at);
+        let is_kept = |panel| around.separation.is_kept(discretization, seen, panel);
+        if !panels.clone().all(is_kept) {
+            let ring = [seen.r, seen.z].map(|x| (x / grain).round() as i64);
+            near.push((ring, index, at));
         }
     }
     near.sort_unstable_by_key(|&(ring, index, _)| (ring, index));
@@ -265,12 +298,11 @@ fn visit(
         rings: Vec::new(),
         panels: Vec::new(),
         finer: Vec::new(),
-        rows: None,
     };
     for ring in near.chunk_by(|a, b| a.0 == b.0) {
         let seen = Meridian::of(&ring[0].2);
         let before = [visit.panels.len(), visit.finer.len()];
-        for panel in 0..discretization.panels().len() {
+        for panel in panels.clone() {
             let keeps = |separation: &Separation| separation.is_kept(discretization, seen, panel);
             if keeps(&around.separation) {
                 continue;
@@ -304,13 +336,14 @@ impl Visit {
         Ok(influence.len(&tables.discretization, self.panels.len()))
     }
 
-    /// Makes the rows, if they are to be kept.
-    fn fill(&mut self, members: &[Member], room: &mut Room) -> Result<(), QuadratureError> {
-        let length = self.len(members)?;
-        let Some(rows) = &mut self.rows else {
-            return Ok(());
-        };
-        rows.resize(length, 0.0);
+    /// Makes the rows.
+    fn fill(
+        &self,
+        members: &[Member],
+        room: &mut Room,
+        rows: &mut Vec<f64>,
+    ) -> Result<(), QuadratureError> {
+        rows.resize(self.len(members)?, 0.0);
         let tables = &members[self.source].tables;
         let influence = tables.influence()?;
         let (mut points, mut panels) = (&self.points[..], &self.panels[..]);
@@ -337,9 +370,11 @@ impl Visit {
         Ok(())
     }
 
+    #[expect(clippy::too_many_arguments, reason = "one step of `Near::correct`")]
     fn correct(
         &self,
         members: &[Member],
+        mut kept: Option<&[f64]>,
         field: &[f64],
         strengths: &Strengths,
         upsampled: &[Option<Arc<Upsampling>>],
@@ -350,7 +385,7 @@ impl Visit {
         let tables = &member.tables;
         let (influence, discretization) = (tables.influence()?, &tables.discretization);
         let (mut points, mut panels) = (&self.points[..], &self.panels[..]);
-        let (mut finer, mut kept) = (&self.finer[..], self.rows.as_deref());
+        let mut finer = &self.finer[..];
         for ring in &self.rings {
             let (on_ring, other_points) = points.split_at(ring.points);
             let (own, others) = panels.split_at(ring.panels);

@@ -112,6 +112,9 @@ pub struct Solve {
         requires = "picture"
     )]
     pub picture_of: PictureOf,
+    /// Write VTK files of surfaces and plane, as [output] vtk = true does.
+    #[arg(long)]
+    pub vtk: bool,
 }
 
 /// Arguments of `grand`.

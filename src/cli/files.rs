@@ -27,18 +27,8 @@ impl Files {
             Some(path) => Some(picture_file(path, quantity)?),
             None => None,
         };
-        let vtk = match &case.output {
-            Some(output) if output.vtk => {
-                let beside = case.path.parent().unwrap_or(Path::new(""));
-                let folder = beside.join(output.directory.as_deref().unwrap_or(Path::new(".")));
-                let refuse = |why| {
-                    let message = format!("output.directory: {}: {why}", folder.display());
-                    Failure::Input(case.error(output.line, message).to_string())
-                };
-                Some(Folder::open(&folder).map_err(refuse)?)
-            }
-            _ => None,
-        };
+        let wanted = arguments.vtk || case.output.as_ref().is_some_and(|output| output.vtk);
+        let vtk = wanted.then(|| vtk_folder(case)).transpose()?;
         Ok(Self { picture, vtk })
     }
 
@@ -96,6 +86,24 @@ fn picture_file(path: &Path, quantity: Quantity) -> Result<(Folder, String, Quan
     Ok((folder, name.to_owned(), quantity))
 }
 
+/// The folder of the VTK files: what `[output]` says, or that of the case.
+fn vtk_folder(case: &Case) -> Result<Folder, Failure> {
+    let beside = case.path.parent().unwrap_or(Path::new(""));
+    let output = case.output.as_ref();
+    let named = output.and_then(|output| output.directory.as_deref());
+    let folder = beside.join(named.unwrap_or(Path::new(".")));
+    Folder::open(&folder).map_err(|why| {
+        let why = format!("{}: {why}", folder.display());
+        Failure::Input(match output {
+            Some(output) => {
+                let message = format!("output.directory: {why}");
+                case.error(output.line, message).to_string()
+            }
+            None => format!("--vtk: {why}"),
+        })
+    })
+}
+
 fn vtk_files(
     case: &Case,
     solved: &Solved,
@@ -107,7 +115,7 @@ fn vtk_files(
         .file_stem()
         .and_then(OsStr::to_str)
         .unwrap_or("case");
-    let surfaces = Mesh::of(&solved.answer.flow, Mesh::azimuths, progress)?.file()?;
+    let surfaces = Mesh::of(&solved.answer, Mesh::azimuths, progress)?.file()?;
     Ok(vec![
         (format!("{stem}-bodies.vtu"), surfaces),
         (format!("{stem}-plane.vts"), plane_file(&view.flow)?),

@@ -150,6 +150,8 @@ pub enum PictureOf {
     Speed,
     /// The pressure.
     Pressure,
+    /// The speed of the flow without its background.
+    Disturbance,
 }
 
 impl From<PictureOf> for Quantity {
@@ -157,6 +159,7 @@ impl From<PictureOf> for Quantity {
         match of {
             PictureOf::Speed => Self::Speed,
             PictureOf::Pressure => Self::Pressure,
+            PictureOf::Disturbance => Self::Disturbance,
         }
     }
 }

@@ -43,7 +43,9 @@ impl Files {
             return Ok(String::new());
         }
         let flow = &solved.answer.flow;
-        let view = View::in_plane(flow, solved.plane, progress)?.relative_to(solved.observer);
+        let view = View::in_plane(flow, solved.plane, progress)?
+            .relative_to(solved.observer)
+            .titled(stem(case));
         let mut written = Vec::new();
         // Everything is made before anything is written.
         if let Some((folder, name, quantity)) = &self.picture {
@@ -86,6 +88,12 @@ fn picture_file(path: &Path, quantity: Quantity) -> Result<(Folder, String, Quan
     Ok((folder, name.to_owned(), quantity))
 }
 
+/// What a case is called.
+fn stem(case: &Case) -> &str {
+    let stem = case.path.file_stem().and_then(OsStr::to_str);
+    stem.unwrap_or("case")
+}
+
 /// The folder of the VTK files: what `[output]` says, or that of the case.
 fn vtk_folder(case: &Case) -> Result<Folder, Failure> {
     let beside = case.path.parent().unwrap_or(Path::new(""));
@@ -110,11 +118,7 @@ fn vtk_files(
     view: &View,
     progress: &dyn Progress,
 ) -> Result<Vec<(String, Vec<u8>)>, Failure> {
-    let stem = case
-        .path
-        .file_stem()
-        .and_then(OsStr::to_str)
-        .unwrap_or("case");
+    let stem = stem(case);
     let surfaces = Mesh::of(&solved.answer, Mesh::azimuths, progress)?.file()?;
     Ok(vec![
         (format!("{stem}-bodies.vtu"), surfaces),

@@ -100,7 +100,7 @@ pub struct Solve {
     #[arg(long, conflicts_with = "json")]
     pub all: bool,
     /// Draw the flow in a plane: colours, streamlines, bodies. The plane is [plane] of the case, or
-    /// one in which much is to be seen.
+    /// one in which much is to be seen. FILE.png needs a build with the feature png.
     #[arg(long, value_name = "FILE.svg")]
     pub picture: Option<PathBuf>,
     /// What the colours of the picture show.

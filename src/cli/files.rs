@@ -49,8 +49,8 @@ impl Files {
         let mut written = Vec::new();
         // Everything is made before anything is written.
         if let Some((folder, name, quantity)) = &self.picture {
-            let drawn = view.picture(*quantity)?;
-            written.push((folder, vec![(name.clone(), drawn.into_bytes())]));
+            let drawn = encoded(view.picture(*quantity)?, name)?;
+            written.push((folder, vec![(name.clone(), drawn)]));
         }
         if let Some(folder) = &self.vtk {
             progress.begin("surface", 0);
@@ -72,10 +72,23 @@ impl Files {
 /// Folder and name of the picture.
 fn picture_file(path: &Path, quantity: Quantity) -> Result<(Folder, String, Quantity), Failure> {
     let refuse = |why: &str| Failure::Input(format!("--picture {}: {why}", path.display()));
-    let svg = path.extension().and_then(OsStr::to_str);
+    let kind = path.extension().and_then(OsStr::to_str);
     let name = path.file_name().and_then(OsStr::to_str);
-    let (Some(name), Some("svg")) = (name, svg) else {
-        return Err(refuse("expected the name of a file that ends in .svg"));
+    let name = match (name, kind) {
+        (Some(name), Some("svg")) => name,
+        (Some(name), Some("png")) if cfg!(feature = "png") => name,
+        (_, Some("png")) => {
+            return Err(refuse(
+                "this program was built without PNG (cargo build --features png): \
+                 expected the name of a file that ends in .svg",
+            ));
+        }
+        _ if cfg!(feature = "png") => {
+            return Err(refuse(
+                "expected the name of a file that ends in .svg or .png",
+            ));
+        }
+        _ => return Err(refuse("expected the name of a file that ends in .svg")),
     };
     if path.is_dir() {
         return Err(refuse("this is a folder"));
@@ -86,6 +99,17 @@ fn picture_file(path: &Path, quantity: Quantity) -> Result<(Folder, String, Quan
     };
     let folder = Folder::open(folder).map_err(|why| refuse(&why))?;
     Ok((folder, name.to_owned(), quantity))
+}
+
+/// A picture as its file's name says: SVG, or PNG.
+fn encoded(picture: String, name: &str) -> Result<Vec<u8>, PictureError> {
+    #[cfg(feature = "png")]
+    if name.ends_with(".png") {
+        return axistokes::output::picture::png(&picture);
+    }
+    #[cfg(not(feature = "png"))]
+    let _ = name;
+    Ok(picture.into_bytes())
 }
 
 /// What a case is called.

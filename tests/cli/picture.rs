@@ -299,8 +299,7 @@ fn refuses_with_one_line_and_writes_nothing() {
     fs::write(folder.join("inside.toml"), inside).expect("a case");
     let before = names(&folder);
     for (arguments, part) in [
-        (&["ball.toml", "--picture", "flow.png"][..], "ends in .svg"),
-        (&["ball.toml", "--picture", "flow"], "ends in .svg"),
+        (&["ball.toml", "--picture", "flow"][..], "ends in .svg"),
         (&["ball.toml", "--picture", ""], "--picture"),
         (&["ball.toml", "--picture"], "--picture"),
         (&["ball.toml", "--picture", ".svg"], "ends in .svg"),
@@ -339,6 +338,60 @@ fn refuses_with_one_line_and_writes_nothing() {
         assert!(output.stdout.is_empty(), "{arguments:?}");
         assert_eq!(names(&folder), before, "{arguments:?}");
     }
+}
+
+#[cfg(not(feature = "png"))]
+#[test]
+fn without_the_feature_png_is_refused_by_name() {
+    let folder = folder("no-png");
+    let output = run(&folder, &["solve", "ball.toml", "--picture", "flow.png"]);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{stderr}");
+    assert!(
+        stderr.contains("--features png") && stderr.contains(".svg"),
+        "{stderr}"
+    );
+    assert_eq!(
+        (stderr.lines().count(), names(&folder)),
+        (1, vec!["ball.toml".to_owned()])
+    );
+}
+
+#[cfg(feature = "png")]
+#[test]
+fn png_is_the_picture_in_pixels() {
+    let folder = folder("png");
+    draw(&folder, &[]);
+    let output = run(&folder, &["solve", "ball.toml", "--picture", "flow.png"]);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    let file = fs::File::open(folder.join("flow.png")).expect("the picture");
+    let mut reader = png::Decoder::new(std::io::BufReader::new(file))
+        .read_info()
+        .expect("a PNG");
+    let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
+    let info = reader.next_frame(&mut pixels).expect("pixels");
+    let svg = fs::read_to_string(folder.join("flow.svg")).expect("the other picture");
+    let document = Document::parse(&svg).expect("XML");
+    let size = ["width", "height"].map(|name| {
+        let size = document.root_element().attribute(name).expect("a size");
+        size.parse::<f64>().expect("a number").round() as u32
+    });
+    assert_eq!([info.width, info.height], size.map(|pixels| 3 * pixels));
+    let pixel = |x: u32, y: u32| {
+        let at = 4 * (3 * (x + y * info.width)) as usize;
+        &pixels[at..at + 3]
+    };
+    let frame = by_id(&document, "frame")
+        .first_element_child()
+        .expect("a rectangle");
+    let corner = ["x", "y"].map(|name| -> f64 { frame.attribute(name).unwrap().parse().unwrap() });
+    let [x, y] = corner.map(|at| at as u32 + 260);
+    assert_eq!(pixel(x, y), [0xbd; 3], "the sphere is grey");
+    assert_eq!(pixel(2, 2), [255; 3]);
+    // The name of the colours is there: something is dark at its place.
+    let dark = (0..60).any(|dx| (0..14).any(|dy| pixel(x + 284 + dx, y - 260 + dy)[0] < 80));
+    assert!(dark, "no text");
 }
 
 #[test]

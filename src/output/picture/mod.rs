@@ -1,11 +1,14 @@
 //! The flow in a plane as a picture: colours, streamlines, and the bodies' sections.
 //!
 //! One SVG file without anything outside it: the colours are an embedded PNG of the grid,
-//! everything else is drawn as lines.
+//! everything else is drawn as lines. With the feature `png`, the `png` function makes an image of
+//! it.
 
 mod axis;
 mod error;
 mod lines;
+#[cfg(feature = "png")]
+mod pixels;
 mod raster;
 mod scale;
 mod smooth;
@@ -20,6 +23,8 @@ use crate::plane::{Plane, PlaneFlow};
 use axis::Axis;
 pub use error::PictureError;
 use lines::{arrows_path, lines_path, streamlines};
+#[cfg(feature = "png")]
+pub use pixels::png;
 use scale::Scale;
 use stokes_body::kernel::FlowAt;
 

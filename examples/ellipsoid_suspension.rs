@@ -60,7 +60,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let plane = middle(&suspension, arguments.side);
     let view = View::in_plane(&answer.flow, plane, &bar)?;
     let drawn = view.picture(Quantity::Speed)?;
-    let surfaces = Mesh::of(&answer.flow, |_| AZIMUTHS, &bar)?.file()?;
+    let surfaces = Mesh::of(&answer, |_| AZIMUTHS, &bar)?.file()?;
     bar.0.finish_and_clear();
 
     fs::create_dir_all(&arguments.directory)?;

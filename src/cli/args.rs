@@ -100,7 +100,7 @@ pub struct Solve {
     #[arg(long, conflicts_with = "json")]
     pub all: bool,
     /// Draw the flow in a plane: colours, streamlines, bodies. The plane is [plane] of the case, or
-    /// one in which much is to be seen.
+    /// one in which much is to be seen. FILE.png needs a build with the feature png.
     #[arg(long, value_name = "FILE.svg")]
     pub picture: Option<PathBuf>,
     /// What the colours of the picture show.
@@ -112,6 +112,9 @@ pub struct Solve {
         requires = "picture"
     )]
     pub picture_of: PictureOf,
+    /// Write VTK files of surfaces and plane, as [output] vtk = true does.
+    #[arg(long)]
+    pub vtk: bool,
 }
 
 /// Arguments of `grand`.
@@ -147,6 +150,8 @@ pub enum PictureOf {
     Speed,
     /// The pressure.
     Pressure,
+    /// The speed of the flow without its background.
+    Disturbance,
 }
 
 impl From<PictureOf> for Quantity {
@@ -154,6 +159,7 @@ impl From<PictureOf> for Quantity {
         match of {
             PictureOf::Speed => Self::Speed,
             PictureOf::Pressure => Self::Pressure,
+            PictureOf::Disturbance => Self::Disturbance,
         }
     }
 }

@@ -27,18 +27,8 @@ impl Files {
             Some(path) => Some(picture_file(path, quantity)?),
             None => None,
         };
-        let vtk = match &case.output {
-            Some(output) if output.vtk => {
-                let beside = case.path.parent().unwrap_or(Path::new(""));
-                let folder = beside.join(output.directory.as_deref().unwrap_or(Path::new(".")));
-                let refuse = |why| {
-                    let message = format!("output.directory: {}: {why}", folder.display());
-                    Failure::Input(case.error(output.line, message).to_string())
-                };
-                Some(Folder::open(&folder).map_err(refuse)?)
-            }
-            _ => None,
-        };
+        let wanted = arguments.vtk || case.output.as_ref().is_some_and(|output| output.vtk);
+        let vtk = wanted.then(|| vtk_folder(case)).transpose()?;
         Ok(Self { picture, vtk })
     }
 
@@ -53,12 +43,14 @@ impl Files {
             return Ok(String::new());
         }
         let flow = &solved.answer.flow;
-        let view = View::in_plane(flow, solved.plane, progress)?.relative_to(solved.observer);
+        let view = View::in_plane(flow, solved.plane, progress)?
+            .relative_to(solved.observer)
+            .titled(stem(case));
         let mut written = Vec::new();
         // Everything is made before anything is written.
         if let Some((folder, name, quantity)) = &self.picture {
-            let drawn = view.picture(*quantity)?;
-            written.push((folder, vec![(name.clone(), drawn.into_bytes())]));
+            let drawn = encoded(view.picture(*quantity)?, name)?;
+            written.push((folder, vec![(name.clone(), drawn)]));
         }
         if let Some(folder) = &self.vtk {
             progress.begin("surface", 0);
@@ -80,10 +72,23 @@ impl Files {
 /// Folder and name of the picture.
 fn picture_file(path: &Path, quantity: Quantity) -> Result<(Folder, String, Quantity), Failure> {
     let refuse = |why: &str| Failure::Input(format!("--picture {}: {why}", path.display()));
-    let svg = path.extension().and_then(OsStr::to_str);
+    let kind = path.extension().and_then(OsStr::to_str);
     let name = path.file_name().and_then(OsStr::to_str);
-    let (Some(name), Some("svg")) = (name, svg) else {
-        return Err(refuse("expected the name of a file that ends in .svg"));
+    let name = match (name, kind) {
+        (Some(name), Some("svg")) => name,
+        (Some(name), Some("png")) if cfg!(feature = "png") => name,
+        (_, Some("png")) => {
+            return Err(refuse(
+                "this program was built without PNG (cargo build --features png): \
+                 expected the name of a file that ends in .svg",
+            ));
+        }
+        _ if cfg!(feature = "png") => {
+            return Err(refuse(
+                "expected the name of a file that ends in .svg or .png",
+            ));
+        }
+        _ => return Err(refuse("expected the name of a file that ends in .svg")),
     };
     if path.is_dir() {
         return Err(refuse("this is a folder"));
@@ -96,18 +101,49 @@ fn picture_file(path: &Path, quantity: Quantity) -> Result<(Folder, String, Quan
     Ok((folder, name.to_owned(), quantity))
 }
 
+/// A picture as its file's name says: SVG, or PNG.
+fn encoded(picture: String, name: &str) -> Result<Vec<u8>, PictureError> {
+    #[cfg(feature = "png")]
+    if name.ends_with(".png") {
+        return axistokes::output::picture::png(&picture);
+    }
+    #[cfg(not(feature = "png"))]
+    let _ = name;
+    Ok(picture.into_bytes())
+}
+
+/// What a case is called.
+fn stem(case: &Case) -> &str {
+    let stem = case.path.file_stem().and_then(OsStr::to_str);
+    stem.unwrap_or("case")
+}
+
+/// The folder of the VTK files: what `[output]` says, or that of the case.
+fn vtk_folder(case: &Case) -> Result<Folder, Failure> {
+    let beside = case.path.parent().unwrap_or(Path::new(""));
+    let output = case.output.as_ref();
+    let named = output.and_then(|output| output.directory.as_deref());
+    let folder = beside.join(named.unwrap_or(Path::new(".")));
+    Folder::open(&folder).map_err(|why| {
+        let why = format!("{}: {why}", folder.display());
+        Failure::Input(match output {
+            Some(output) => {
+                let message = format!("output.directory: {why}");
+                case.error(output.line, message).to_string()
+            }
+            None => format!("--vtk: {why}"),
+        })
+    })
+}
+
 fn vtk_files(
     case: &Case,
     solved: &Solved,
     view: &View,
     progress: &dyn Progress,
 ) -> Result<Vec<(String, Vec<u8>)>, Failure> {
-    let stem = case
-        .path
-        .file_stem()
-        .and_then(OsStr::to_str)
-        .unwrap_or("case");
-    let surfaces = Mesh::of(&solved.answer.flow, Mesh::azimuths, progress)?.file()?;
+    let stem = stem(case);
+    let surfaces = Mesh::of(&solved.answer, Mesh::azimuths, progress)?.file()?;
     Ok(vec![
         (format!("{stem}-bodies.vtu"), surfaces),
         (format!("{stem}-plane.vts"), plane_file(&view.flow)?),

@@ -4,8 +4,9 @@
 use nalgebra::Vector3;
 
 use crate::plane::section::sections;
-use crate::plane::{Plane, PlaneFlow, PlaneOptions};
+use crate::plane::{Plane, PlaneFlow, PlaneOptions, heads};
 use bodies_of_revolution::CurveError;
+use stokes_body::linear_flow::LinearFlow;
 use stokes_body::progress::{Progress, Silent};
 use stokes_suspension::{Answer, Flow, Suspension, SuspensionError};
 
@@ -17,6 +18,12 @@ pub struct View {
     /// Closed curves in the coordinates of the plane, with what an odd number of them goes around
     /// inside bodies.
     pub sections: Vec<Vec<[f64; 2]>>,
+    /// Arrows inside the bodies that have a slip, from tail to head.
+    pub heads: Vec<[[f64; 2]; 2]>,
+    /// The undisturbed flow, as the same observer sees it.
+    pub background: LinearFlow,
+    /// What a picture is called; nothing if empty.
+    pub title: String,
 }
 
 /// Why there is nothing to see.
@@ -49,14 +56,27 @@ impl View {
         Ok(Self {
             flow: PlaneFlow::sample(flow, plane, progress)?,
             sections: sections(flow, &plane)?,
+            heads: heads(flow, &plane),
+            background: *flow.background(),
+            title: String::new(),
         })
     }
 
     /// The same seen by an observer who moves with this velocity.
     #[must_use]
-    pub fn relative_to(self, velocity: Vector3<f64>) -> Self {
+    pub fn relative_to(mut self, velocity: Vector3<f64>) -> Self {
+        self.background.velocity -= velocity;
         Self {
             flow: self.flow.relative_to(velocity),
+            ..self
+        }
+    }
+
+    /// The same with a title above its pictures.
+    #[must_use]
+    pub fn titled(self, title: impl Into<String>) -> Self {
+        Self {
+            title: title.into(),
             ..self
         }
     }

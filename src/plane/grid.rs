@@ -3,6 +3,7 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use stokes_body::kernel::FlowAt;
+use stokes_body::linear_flow::LinearFlow;
 use stokes_body::progress::Progress;
 use stokes_suspension::{Flow, SuspensionError};
 
@@ -88,6 +89,17 @@ impl PlaneFlow {
     pub fn relative_to(mut self, velocity: Vector3<f64>) -> Self {
         for value in self.values.iter_mut().flatten() {
             value.velocity -= velocity;
+        }
+        self
+    }
+
+    /// What is left of the flow without another one.
+    #[must_use]
+    pub fn without(mut self, background: &LinearFlow) -> Self {
+        for (value, point) in self.values.iter_mut().zip(self.plane.grid()) {
+            if let Some(at) = value {
+                at.velocity -= background.at(point.coords);
+            }
         }
         self
     }

@@ -251,7 +251,7 @@ velocity = [0.1, 0.0, 0.2]
 tolerance = 1e-7
 ";
     let solved = solved(text);
-    let surface = Surface::of(&solved.answer.flow, |_| 128, &Silent).expect("surfaces");
+    let surface = Surface::of(&solved.answer, |_| 128, &Silent).expect("surfaces");
     let area = |[a, b, c]: [usize; 3]| {
         let [a, b, c] = [a, b, c].map(|v| surface.points[v]);
         0.5 * (b - a).cross(&(c - a)).norm()

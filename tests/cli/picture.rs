@@ -116,7 +116,7 @@ fn the_speed_around_a_sphere() {
     );
     let document = Document::parse(&svg).expect("XML");
     let texts = texts(&document);
-    for text in ["speed", "x", "z", "0", "−2", "0.2"] {
+    for text in ["ball", "speed", "x", "z", "0", "−2", "0.2"] {
         assert!(
             texts.iter().any(|found| found == text),
             "no {text} in {texts:?}"
@@ -199,6 +199,98 @@ fn the_pressure() {
     );
 }
 
+/// The ends of the bar of the colours that are pointed.
+fn pointed(document: &Document<'_>) -> usize {
+    let beyond = |node: &Node<'_, '_>| node.attribute("class") == Some("beyond");
+    document.descendants().filter(beyond).count()
+}
+
+#[test]
+fn the_disturbance_is_the_flow_without_its_background() {
+    let folder = folder("disturbance");
+    let moving = draw(&folder, &[]);
+    let held = SPHERE.replace("velocity = [0, 0, 1]\n", "")
+        + "[background]\nkind = 'uniform'\nvelocity = [0, 0, -1]\n";
+    for frame in ["lab", "body"] {
+        let held = held.replace("points = 53", &format!("points = 53\nframe = '{frame}'"));
+        fs::write(folder.join("ball.toml"), held).expect("a case");
+        let svg = draw(&folder, &["--picture-of", "disturbance"]);
+        let [one, other] = [&moving, &svg].map(|svg| Document::parse(svg).expect("XML"));
+        assert!(texts(&other).iter().any(|text| text == "disturbance"));
+        let [(_, _, one), (_, _, other)] = [image(&one), image(&other)];
+        // On the sphere itself inside and outside may differ by rounding.
+        let differ = one.iter().zip(&other).filter(|(a, b)| a.abs_diff(**b) > 1);
+        assert!(differ.count() < 20);
+    }
+    assert_eq!(pointed(&Document::parse(&moving).expect("XML")), 0);
+}
+
+#[test]
+fn swimmers_have_heads_and_others_have_none() {
+    let folder = folder("heads");
+    let svg = draw(&folder, &[]);
+    let document = Document::parse(&svg).expect("XML");
+    assert!(places(by_id(&document, "heads")).is_empty());
+    let slip = "axis = [1, 0, 0]\nforce = [0, 0, 0]\nslip = { kind = 'squirmer', b = [1.0] }\n";
+    let swimmer = SPHERE.replace("velocity = [0, 0, 1]\n", slip);
+    fs::write(folder.join("ball.toml"), &swimmer).expect("a case");
+    let svg = draw(&folder, &[]);
+    let document = Document::parse(&svg).expect("XML");
+    let ([tail, ..], [.., tip, _, _, _]) = (
+        &places(by_id(&document, "heads"))[..],
+        &places(by_id(&document, "heads"))[..],
+    ) else {
+        panic!("no arrow");
+    };
+    // 100 pixels to the radius, to the right.
+    assert!(
+        tip[0] - tail[0] > 90.0 && (tip[1] - tail[1]).abs() < 0.2,
+        "{tail:?} {tip:?}"
+    );
+    // Seen from above there is none.
+    let above = swimmer.replace("[plane]\n", "[plane]\nnormal = [1, 0, 0]\n");
+    fs::write(folder.join("ball.toml"), above).expect("a case");
+    let svg = draw(&folder, &[]);
+    let document = Document::parse(&svg).expect("XML");
+    assert!(places(by_id(&document, "heads")).is_empty());
+}
+
+#[test]
+fn pressures_that_have_no_colour_are_marked() {
+    let folder = folder("beyond");
+    // Near the rim of a disc.
+    let disc = SPHERE
+        .replace(
+            "kind = 'sphere'\nradius = 1.0",
+            "kind = 'spheroid'\npolar = 0.02\nequatorial = 1.0",
+        )
+        .replace("points = 53", "points = 131")
+        + "[accuracy]\ntolerance = 1e-3\n";
+    fs::write(folder.join("ball.toml"), disc).expect("a case");
+    let svg = draw(&folder, &["--picture-of", "pressure"]);
+    assert_eq!(pointed(&Document::parse(&svg).expect("XML")), 2);
+}
+
+#[test]
+fn titles_are_text_and_have_room() {
+    let folder = folder("titles");
+    let name = format!("a <b> & {}", "c".repeat(100));
+    fs::write(folder.join(format!("{name}.toml")), SPHERE).expect("a case");
+    let output = run(
+        &folder,
+        &["solve", &format!("{name}.toml"), "--picture", "flow.svg"],
+    );
+    assert_eq!(output.status.code(), Some(0));
+    let svg = fs::read_to_string(folder.join("flow.svg")).expect("the picture");
+    let document = Document::parse(&svg).expect("XML");
+    let title = by_id(&document, "title").text().expect("text").trim();
+    assert!(
+        title.starts_with("a <b> & ccc") && title.ends_with('…'),
+        "{title}"
+    );
+    assert!(title.chars().count() < 60);
+}
+
 #[test]
 fn refuses_with_one_line_and_writes_nothing() {
     let folder = folder("refusals");
@@ -207,8 +299,7 @@ fn refuses_with_one_line_and_writes_nothing() {
     fs::write(folder.join("inside.toml"), inside).expect("a case");
     let before = names(&folder);
     for (arguments, part) in [
-        (&["ball.toml", "--picture", "flow.png"][..], "ends in .svg"),
-        (&["ball.toml", "--picture", "flow"], "ends in .svg"),
+        (&["ball.toml", "--picture", "flow"][..], "ends in .svg"),
         (&["ball.toml", "--picture", ""], "--picture"),
         (&["ball.toml", "--picture"], "--picture"),
         (&["ball.toml", "--picture", ".svg"], "ends in .svg"),
@@ -247,6 +338,60 @@ fn refuses_with_one_line_and_writes_nothing() {
         assert!(output.stdout.is_empty(), "{arguments:?}");
         assert_eq!(names(&folder), before, "{arguments:?}");
     }
+}
+
+#[cfg(not(feature = "png"))]
+#[test]
+fn without_the_feature_png_is_refused_by_name() {
+    let folder = folder("no-png");
+    let output = run(&folder, &["solve", "ball.toml", "--picture", "flow.png"]);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{stderr}");
+    assert!(
+        stderr.contains("--features png") && stderr.contains(".svg"),
+        "{stderr}"
+    );
+    assert_eq!(
+        (stderr.lines().count(), names(&folder)),
+        (1, vec!["ball.toml".to_owned()])
+    );
+}
+
+#[cfg(feature = "png")]
+#[test]
+fn png_is_the_picture_in_pixels() {
+    let folder = folder("png");
+    draw(&folder, &[]);
+    let output = run(&folder, &["solve", "ball.toml", "--picture", "flow.png"]);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    let file = fs::File::open(folder.join("flow.png")).expect("the picture");
+    let mut reader = png::Decoder::new(std::io::BufReader::new(file))
+        .read_info()
+        .expect("a PNG");
+    let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
+    let info = reader.next_frame(&mut pixels).expect("pixels");
+    let svg = fs::read_to_string(folder.join("flow.svg")).expect("the other picture");
+    let document = Document::parse(&svg).expect("XML");
+    let size = ["width", "height"].map(|name| {
+        let size = document.root_element().attribute(name).expect("a size");
+        size.parse::<f64>().expect("a number").round() as u32
+    });
+    assert_eq!([info.width, info.height], size.map(|pixels| 3 * pixels));
+    let pixel = |x: u32, y: u32| {
+        let at = 4 * (3 * (x + y * info.width)) as usize;
+        &pixels[at..at + 3]
+    };
+    let frame = by_id(&document, "frame")
+        .first_element_child()
+        .expect("a rectangle");
+    let corner = ["x", "y"].map(|name| -> f64 { frame.attribute(name).unwrap().parse().unwrap() });
+    let [x, y] = corner.map(|at| at as u32 + 260);
+    assert_eq!(pixel(x, y), [0xbd; 3], "the sphere is grey");
+    assert_eq!(pixel(2, 2), [255; 3]);
+    // The name of the colours is there: something is dark at its place.
+    let dark = (0..60).any(|dx| (0..14).any(|dy| pixel(x + 284 + dx, y - 260 + dy)[0] < 80));
+    assert!(dark, "no text");
 }
 
 #[test]

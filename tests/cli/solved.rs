@@ -35,7 +35,7 @@ fn the_surface_is_that_of_the_body_and_moves_with_it() {
     let (case, solved) = solved("oblique-spheroid.toml");
     let body = &case.bodies[0];
     let [center, axis] = [body.center, body.axis].map(Vector3::from);
-    let surface = Surface::of(&solved.answer.flow, |_| 8, &Silent).expect("a surface");
+    let surface = Surface::of(&solved.answer, |_| 8, &Silent).expect("a surface");
     let nodes = solved.answer.flow.bodies()[0]
         .disturbance
         .discretization()
@@ -59,7 +59,7 @@ fn the_surface_is_that_of_the_body_and_moves_with_it() {
 #[test]
 fn the_traction_of_a_sphere_is_uniform() {
     let (case, solved) = solved("sphere-drag.toml");
-    let surface = Surface::of(&solved.answer.flow, |_| 5, &Silent).expect("a surface");
+    let surface = Surface::of(&solved.answer, |_| 5, &Silent).expect("a surface");
     for traction in surface.traction {
         let exact: Vector3<f64> = -1.5 * case.viscosity * Vector3::z();
         assert!((traction - exact).norm() < 1e-11, "{traction}");

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::f64::consts::PI;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use axistokes::case::Case;
@@ -92,7 +92,7 @@ fn read_surface(bytes: &[u8]) -> Mesh {
 }
 
 fn mesh(solved: &Solved, azimuths: usize) -> Mesh {
-    let surface = Surface::of(&solved.answer.flow, |_| azimuths, &Silent).expect("a surface");
+    let surface = Surface::of(&solved.answer, |_| azimuths, &Silent).expect("a surface");
     read_surface(&surface.file().expect("a file"))
 }
 
@@ -189,6 +189,71 @@ fn surfaces_are_closed_and_converge_at_second_order() {
 }
 
 #[test]
+fn sums_by_weights_are_areas_and_forces_to_the_estimate() {
+    let e = 0.75f64.sqrt();
+    let spheroid = 2.0 * PI * 0.25 * (1.0 + 2.0 / e * e.asin());
+    for (shape, area) in [
+        (SPHERE, 4.0 * PI),
+        (SPHEROID, spheroid),
+        (TORUS, 4.0 * PI * PI * 0.4),
+    ] {
+        let scaled = case(shape, "scale = 1.5\n[accuracy]\ntolerance = 1e-9");
+        let case = Case::parse(&scaled, "body.toml").expect("a case");
+        let solved = solve(&case, &Silent).expect("an answer");
+        let mesh = mesh(&solved, 64);
+        let weights = &mesh.data["weight"];
+        let sum: f64 = weights.iter().sum();
+        assert!((sum / (2.25 * area) - 1.0).abs() < 1e-9, "{shape}: {sum}");
+        let traction = mesh.vectors("traction");
+        let force: Vector3<f64> = traction.iter().zip(weights).map(|(t, w)| *w * t).sum();
+        let known = Vector3::from(solved.report.bodies[0].force);
+        let off = (force + known).norm() / known.norm();
+        assert!(off < 1e-8, "{shape}: {off:e}");
+    }
+}
+
+#[test]
+fn field_data_say_what_belongs_to_bodies() {
+    let solved = solved(SPHEROID, 4);
+    let surface = Surface::of(&solved.answer, |_| 16, &Silent).expect("a surface");
+    let file = String::from_utf8(surface.file().expect("a file")).expect("text");
+    let document = roxmltree::Document::parse(&file).expect("XML");
+    let fields = document
+        .descendants()
+        .find(|node| node.has_tag_name("FieldData"));
+    let fields = fields.expect("field data");
+    let numbers = |name: &str| -> Vec<f64> {
+        let array = fields
+            .children()
+            .find(|a| a.attribute("Name") == Some(name));
+        let text = array
+            .and_then(|a| a.text())
+            .unwrap_or_else(|| panic!("no {name}"));
+        text.split_whitespace()
+            .map(|word| word.parse().expect("a number"))
+            .collect()
+    };
+    assert_eq!(numbers("viscosity"), [2.0]);
+    assert_eq!(numbers("estimated_error"), [solved.answer.error_estimate]);
+    assert_eq!(numbers("center"), [0.3, -0.2, 0.5]);
+    let axis = Vector3::from_vec(numbers("axis"));
+    assert!((axis - Vector3::new(1.0, 2.0, 2.0) / 3.0).norm() < 1e-15);
+    let q = numbers("orientation_wxyz");
+    let q = axistokes::nalgebra::Quaternion::new(q[0], q[1], q[2], q[3]);
+    let turned = axistokes::nalgebra::UnitQuaternion::new_unchecked(q) * Vector3::z();
+    assert!((turned - axis).norm() < 1e-15);
+    let body = &solved.answer.bodies[0];
+    for (name, vector) in [
+        ("body_velocity", body.motion.velocity),
+        ("body_angular_velocity", body.motion.angular_velocity),
+        ("force_on_fluid", body.wrench.force),
+        ("torque_on_fluid", body.wrench.torque),
+    ] {
+        assert_eq!(numbers(name), vector.as_slice(), "{name}");
+    }
+}
+
+#[test]
 fn surface_data_of_a_sphere_are_exact() {
     // Traction -3 mu U / 2a - 3 mu Omega x n, velocity U + a Omega x n.
     let mesh = mesh(&solved(SPHERE, 4), 16);
@@ -219,16 +284,15 @@ fn stokes(u: Vector3<f64>, x: Vector3<f64>) -> (Vector3<f64>, f64) {
     (velocity, 1.5 * n.dot(&u) / (r * r))
 }
 
-#[test]
-fn the_command_writes_surface_and_plane() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("vtk");
+/// A folder for one test, with a case in it, after the command has solved it.
+fn run(name: &str, text: &str, options: &[&str]) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).expect("a folder");
-    let rest = "[plane]\nnormal = [0, 1, 0]\nsize = [6, 4]\npoints = [31, 21]\n[output]\ndirectory = 'a/b'\nvtk = true\n";
-    let text = case(SPHERE, rest).replace("angular_velocity", "# angular_velocity");
     fs::write(folder.join("ball.toml"), text).expect("a case");
     let output = Command::new(env!("CARGO_BIN_EXE_axistokes"))
         .args(["solve", "ball.toml"])
+        .args(options)
         .current_dir(&folder)
         .stdin(Stdio::null())
         .output()
@@ -236,12 +300,50 @@ fn the_command_writes_surface_and_plane() {
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{stderr}");
     assert!(String::from_utf8_lossy(&output.stdout).contains("\nwritten: "));
-    let mut names: Vec<_> = fs::read_dir(folder.join("a/b"))
-        .expect("the folder")
+    folder
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("the folder");
+    let mut names: Vec<_> = entries
         .map(|entry| entry.expect("an entry").file_name())
+        .map(|name| name.into_string().expect("UTF-8"))
         .collect();
     names.sort();
-    assert_eq!(names, ["ball-bodies.vtu", "ball-plane.vts"]);
+    names
+}
+
+#[test]
+fn the_option_does_what_the_case_may_ask() {
+    let plane = "[plane]\npoints = 11\n";
+    let asked = case(SPHERE, &format!("{plane}[output]\nvtk = true\n"));
+    let asked = run("vtk-asked", &asked, &[]);
+    let option = run("vtk-option", &case(SPHERE, plane), &["--vtk"]);
+    let both = ["ball-bodies.vtu", "ball-plane.vts", "ball.toml"];
+    assert_eq!(names(&option), both);
+    for name in &both[..2] {
+        let read = |folder: &Path| fs::read(folder.join(name)).expect("a file");
+        assert!(read(&asked) == read(&option), "{name}");
+    }
+    let elsewhere = format!("{plane}[output]\ndirectory = 'out'\n");
+    let elsewhere = run(
+        "vtk-elsewhere",
+        &case(SPHERE, &elsewhere),
+        &["--vtk", "--picture", "flow.svg"],
+    );
+    assert_eq!(names(&elsewhere), ["ball.toml", "flow.svg", "out"]);
+    assert_eq!(names(&elsewhere.join("out")), both[..2]);
+}
+
+#[test]
+fn the_command_writes_surface_and_plane() {
+    let rest = "[plane]\nnormal = [0, 1, 0]\nsize = [6, 4]\npoints = [31, 21]\n[output]\ndirectory = 'a/b'\nvtk = true\n";
+    let text = case(SPHERE, rest).replace("angular_velocity", "# angular_velocity");
+    let folder = run("vtk", &text, &[]);
+    assert_eq!(
+        names(&folder.join("a/b")),
+        ["ball-bodies.vtu", "ball-plane.vts"]
+    );
 
     let bytes = fs::read(folder.join("a/b/ball-bodies.vtu")).expect("the surface");
     assert_eq!(read_surface(&bytes).euler_characteristic(), 2);

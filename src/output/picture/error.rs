@@ -15,4 +15,10 @@ pub enum PictureError {
     /// The image of the colours cannot be encoded.
     #[error("cannot draw the picture: {0}")]
     Image(String),
+    /// No font for numbers and names.
+    #[cfg(feature = "png")]
+    #[error(
+        "cannot draw a PNG: no font was found on this machine, expected one for the numbers; SVG needs none"
+    )]
+    NoFont,
 }

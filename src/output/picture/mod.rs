@@ -1,25 +1,31 @@
 //! The flow in a plane as a picture: colours, streamlines, and the bodies' sections.
 //!
 //! One SVG file without anything outside it: the colours are an embedded PNG of the grid,
-//! everything else is drawn as lines.
+//! everything else is drawn as lines. With the feature `png`, the `png` function makes an image of
+//! it.
 
 mod axis;
 mod error;
+mod lines;
+#[cfg(feature = "png")]
+mod pixels;
 mod raster;
+mod scale;
+mod smooth;
 
 use plotters::style::RGBColor;
 use svg::node::element::path::Data;
-use svg::node::element::{
-    ClipPath, Definitions, Group, Image, Line, LinearGradient, Path, Rectangle, Stop, Text,
-};
+use svg::node::element::{ClipPath, Definitions, Group, Image, Line, Path, Rectangle, Text};
 use svg::{Document, Node};
 
 use super::View;
-use super::plot::colour::{blue_red, viridis};
-use crate::plane::streamlines::{Streamline, evenly_spaced};
 use crate::plane::{Plane, PlaneFlow};
 use axis::Axis;
 pub use error::PictureError;
+use lines::{arrows_path, lines_path, streamlines};
+#[cfg(feature = "png")]
+pub use pixels::png;
+use scale::Scale;
 use stokes_body::kernel::FlowAt;
 
 /// What the colours show.
@@ -30,89 +36,24 @@ pub enum Quantity {
     #[default]
     Speed,
     /// The pressure: the same up and down from zero, and so far that only one point in a thousand
-    /// lies beyond.
+    /// lies beyond; where any do, the bar of the colours ends in a point.
     Pressure,
+    /// The same as the speed, of the flow without the undisturbed one.
+    Disturbance,
 }
 
 /// The longer side of the plane, in pixels.
 const LENGTH: f64 = 520.0;
 /// Left, top, right, bottom of it, in pixels.
 const MARGIN: [f64; 4] = [66.0, 20.0, 124.0, 56.0];
-/// Streamlines side by side along the longer side.
-const STREAMLINES: f64 = 28.0;
-/// Speeds in the plane below this part of the largest speed have no streamlines: they are rounding.
-const STILL: f64 = 1e-6;
-/// The part of the pressures that the colours cover.
-const COVERED: f64 = 0.999;
-/// Length and half width of arrowheads, and the way from one to the next, in pixels.
-const ARROW: [f64; 3] = [8.5, 3.4, 170.0];
-
-/// The picture as SVG; `sections` are closed curves in the plane's coordinates, with what an odd
-/// number of them goes around filled grey.
-///
-/// # Errors
-/// If there is nothing to draw.
-fn picture(
-    flow: &PlaneFlow,
-    sections: &[Vec<[f64; 2]>],
-    quantity: Quantity,
-) -> Result<String, PictureError> {
-    let canvas = Canvas::new(&flow.plane);
-    let speed = |at: &FlowAt| at.velocity.norm();
-    let shown = |at: &FlowAt| match quantity {
-        Quantity::Speed => speed(at),
-        Quantity::Pressure => at.pressure,
-    };
-    let values: Vec<f64> = flow.values.iter().flatten().map(shown).collect();
-    let fastest = flow.values.iter().flatten().map(speed).fold(0.0, f64::max);
-    if !(fastest.is_finite() && values.iter().all(|value| value.is_finite())) {
-        return Err(PictureError::NotFinite);
-    }
-    let scale = Scale::new(quantity, values);
-    let colours = flow
-        .continued(|at| [shown(at)])
-        .ok_or(PictureError::NoFluid)?;
-    let shades = colours.values().iter().map(|&[value]| scale.shade(value));
-    let image = raster::png(
-        &shades.collect::<Vec<_>>(),
-        flow.plane.points[0],
-        scale.colour,
-    )?;
-
-    let frame = canvas.frame();
-    let [dx, dy] = canvas.pixels(flow.plane.spacing());
-    let [left, top, width, height] = frame;
-    // A pixel's centre is a grid point: half a pixel hangs over on every side.
-    let image = Image::new()
-        .set("href", format!("data:image/png;base64,{image}"))
-        .set("x", tenths(left - 0.5 * dx))
-        .set("y", tenths(top - 0.5 * dy))
-        .set("width", tenths(width + dx))
-        .set("height", tenths(height + dy))
-        .set("preserveAspectRatio", "none");
-    let lines = streamlines(flow, sections, fastest);
-    let inside = Group::new()
-        .set("clip-path", "url(#frame)")
-        .add(image)
-        .add(lines_path(&canvas, &lines, quantity))
-        .add(arrows_path(&canvas, &lines, quantity))
-        .add(sections_path(&canvas, sections));
-    let clip = ClipPath::new().set("id", "frame").add(rectangle(frame));
-    let whole = [0.0, 0.0, canvas.whole[0], canvas.whole[1]];
-    let mut document = Document::new()
-        .set("width", tenths(whole[2]))
-        .set("height", tenths(whole[3]))
-        .set("viewBox", (0, 0, tenths(whole[2]), tenths(whole[3])))
-        .set("font-family", "sans-serif")
-        .set("font-size", 14)
-        .add(Definitions::new().add(clip).add(scale.gradient()))
-        .add(rectangle(whole).set("fill", "white"))
-        .add(inside)
-        .add(outlined(frame));
-    canvas.axes(&mut document, &flow.plane);
-    canvas.colour_bar(&mut document, &scale);
-    Ok(document.to_string() + "\n")
-}
+/// What a title takes above it, in pixels.
+const TITLE: f64 = 22.0;
+/// Width of a letter there, in pixels.
+const LETTER: f64 = 9.0;
+/// Length of the pointed end of the bar of colours, in pixels.
+const POINT: f64 = 14.0;
+/// Length and half width of the arrowheads of swimmers, in pixels.
+const HEAD: [f64; 2] = [13.0, 5.0];
 
 impl View {
     /// The picture as SVG.
@@ -120,7 +61,74 @@ impl View {
     /// # Errors
     /// If there is nothing to draw.
     pub fn picture(&self, quantity: Quantity) -> Result<String, PictureError> {
-        picture(&self.flow, &self.sections, quantity)
+        match quantity {
+            Quantity::Speed | Quantity::Pressure => self.draw(&self.flow, quantity),
+            Quantity::Disturbance => {
+                let flow = self.flow.clone().without(&self.background);
+                self.draw(&flow, quantity)
+            }
+        }
+    }
+
+    /// The picture of a flow in the same plane.
+    fn draw(&self, flow: &PlaneFlow, quantity: Quantity) -> Result<String, PictureError> {
+        let canvas = Canvas::new(&flow.plane, !self.title.is_empty());
+        let speed = |at: &FlowAt| at.velocity.norm();
+        let shown = |at: &FlowAt| match quantity {
+            Quantity::Speed | Quantity::Disturbance => speed(at),
+            Quantity::Pressure => at.pressure,
+        };
+        let values: Vec<f64> = flow.values.iter().flatten().map(shown).collect();
+        let fastest = flow.values.iter().flatten().map(speed).fold(0.0, f64::max);
+        if !(fastest.is_finite() && values.iter().all(|value| value.is_finite())) {
+            return Err(PictureError::NotFinite);
+        }
+        let scale = Scale::new(quantity, values);
+        let colours = flow
+            .continued(|at| [shown(at)])
+            .ok_or(PictureError::NoFluid)?;
+        let shades = colours.values().iter().map(|&[value]| scale.shade(value));
+        let image = raster::png(
+            &shades.collect::<Vec<_>>(),
+            flow.plane.points[0],
+            scale.colour,
+        )?;
+
+        let frame = canvas.frame();
+        let [dx, dy] = canvas.pixels(flow.plane.spacing());
+        let [left, top, width, height] = frame;
+        // A pixel's centre is a grid point: half a pixel hangs over on every side.
+        let image = Image::new()
+            .set("href", format!("data:image/png;base64,{image}"))
+            .set("x", tenths(left - 0.5 * dx))
+            .set("y", tenths(top - 0.5 * dy))
+            .set("width", tenths(width + dx))
+            .set("height", tenths(height + dy))
+            .set("preserveAspectRatio", "none");
+        let lines = streamlines(flow, &self.sections, fastest);
+        let inside = Group::new()
+            .set("clip-path", "url(#frame)")
+            .add(image)
+            .add(lines_path(&canvas, &lines, quantity))
+            .add(arrows_path(&canvas, &lines, quantity))
+            .add(sections_path(&canvas, &self.sections))
+            .add(heads_path(&canvas, self));
+        let clip = ClipPath::new().set("id", "frame").add(rectangle(frame));
+        let whole = [0.0, 0.0, canvas.whole[0], canvas.whole[1]];
+        let mut document = Document::new()
+            .set("width", tenths(whole[2]))
+            .set("height", tenths(whole[3]))
+            .set("viewBox", (0, 0, tenths(whole[2]), tenths(whole[3])))
+            .set("font-family", "sans-serif")
+            .set("font-size", 14)
+            .add(Definitions::new().add(clip).add(scale.gradient()))
+            .add(rectangle(whole).set("fill", "white"))
+            .add(inside)
+            .add(outlined(frame));
+        canvas.title(&mut document, &self.title);
+        canvas.axes(&mut document, &flow.plane);
+        canvas.colour_bar(&mut document, &scale);
+        Ok(document.to_string() + "\n")
     }
 }
 
@@ -130,25 +138,45 @@ struct Canvas {
     scale: f64,
     /// Size of the plane, in pixels.
     size: [f64; 2],
+    /// Above the plane, in pixels.
+    top: f64,
     /// Size of the picture, in pixels.
     whole: [f64; 2],
 }
 
 impl Canvas {
-    fn new(plane: &Plane) -> Self {
+    fn new(plane: &Plane, titled: bool) -> Self {
         let scale = LENGTH / plane.size[0].max(plane.size[1]);
         let size = plane.size.map(|length| length * scale);
         let [left, top, right, bottom] = MARGIN;
+        let top = if titled { top + TITLE } else { top };
         Self {
             scale,
             size,
+            top,
             whole: [size[0] + left + right, size[1].max(160.0) + top + bottom],
         }
     }
 
     /// Left, top, width and height of the plane.
     fn frame(&self) -> [f64; 4] {
-        [MARGIN[0], MARGIN[1], self.size[0], self.size[1]]
+        [MARGIN[0], self.top, self.size[0], self.size[1]]
+    }
+
+    /// The title above the plane, as much of it as there is room for.
+    fn title(&self, document: &mut Document, title: &str) {
+        if title.is_empty() {
+            return;
+        }
+        let [left, top, width, _] = self.frame();
+        let room = (width.max(MARGIN[2]) / LETTER) as usize;
+        let mut short: String = title.chars().take(room).collect();
+        if short.len() < title.len() {
+            short.pop();
+            short.push('…');
+        }
+        let title = text(&short, [left + 0.5 * width, top - 12.0], "middle");
+        document.append(title.set("id", "title").set("font-size", 16));
     }
 
     fn pixels(&self, lengths: [f64; 2]) -> [f64; 2] {
@@ -157,13 +185,18 @@ impl Canvas {
 
     /// The pixel of a point of the plane; those that lie far outside are moved nearer, to be
     /// numbers that every viewer can hold.
-    fn place(&self, [x, y]: [f64; 2]) -> (f32, f32) {
+    fn place(&self, point: [f64; 2]) -> (f32, f32) {
+        self.exactly(point).map(tenths).into()
+    }
+
+    /// The same, not rounded.
+    fn exactly(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [left, top, width, height] = self.frame();
         let pixels = |length: f64| (length * self.scale).clamp(-1e6, 1e6);
-        (
-            tenths(left + 0.5 * width + pixels(x)),
-            tenths(top + 0.5 * height - pixels(y)),
-        )
+        [
+            left + 0.5 * width + pixels(x),
+            top + 0.5 * height - pixels(y),
+        ]
     }
 
     /// Ticks, numbers and names of both axes.
@@ -200,8 +233,19 @@ impl Canvas {
             18.0,
             height.max(160.0) - 26.0,
         ];
-        document.append(outlined(bar).set("fill", "url(#colours)"));
         document.append(text(scale.name, [bar[0], top + 12.0], "start"));
+        let points = scale.beyond.map(|beyond| if beyond { POINT } else { 0.0 });
+        let [x, y, w, h] = bar;
+        let bar = [x, y + points[1], w, h - points[0] - points[1]];
+        document.append(outlined(bar).set("fill", "url(#colours)"));
+        for (beyond, colour, base, tip) in [
+            (scale.beyond[0], 0.0, bar[1] + bar[3], y + h),
+            (scale.beyond[1], 1.0, bar[1], y),
+        ] {
+            if beyond {
+                document.append(pointed_end([x, x + w], base, tip, (scale.colour)(colour)));
+            }
+        }
         let [from, to] = scale.range;
         for (value, label) in axis::ticks(scale.range) {
             let y = bar[1] + bar[3] * (to - value) / (to - from);
@@ -210,74 +254,6 @@ impl Canvas {
             document.append(text(&label, [right + 9.0, y + 5.0], "start"));
         }
     }
-}
-
-/// From values to colours.
-struct Scale {
-    name: &'static str,
-    range: [f64; 2],
-    colour: fn(f64) -> RGBColor,
-}
-
-impl Scale {
-    /// The range that the values need; of length one if they all vanish.
-    fn new(quantity: Quantity, mut values: Vec<f64>) -> Self {
-        let positive = |most: f64| if most > 0.0 { most } else { 1.0 };
-        match quantity {
-            Quantity::Speed => Self {
-                name: "speed",
-                range: [0.0, positive(values.into_iter().fold(0.0, f64::max))],
-                colour: viridis,
-            },
-            Quantity::Pressure => {
-                values.iter_mut().for_each(|value| *value = value.abs());
-                values.sort_by(f64::total_cmp);
-                let index = (COVERED * values.len() as f64) as usize;
-                let most = positive(values.get(index).copied().unwrap_or_default());
-                Self {
-                    name: "pressure",
-                    range: [-most, most],
-                    colour: blue_red,
-                }
-            }
-        }
-    }
-
-    fn shade(&self, value: f64) -> f64 {
-        let [from, to] = self.range;
-        ((value - from) / (to - from)).clamp(0.0, 1.0)
-    }
-
-    /// The colours from below upwards.
-    fn gradient(&self) -> LinearGradient {
-        const STOPS: usize = 40;
-        let gradient = LinearGradient::new()
-            .set("id", "colours")
-            .set("x1", 0)
-            .set("y1", 1)
-            .set("x2", 0)
-            .set("y2", 0);
-        (0..=STOPS).fold(gradient, |gradient, k| {
-            let t = k as f64 / STOPS as f64;
-            let RGBColor(r, g, b) = (self.colour)(t);
-            let stop = Stop::new().set("offset", t);
-            gradient.add(stop.set("stop-color", format!("#{r:02x}{g:02x}{b:02x}")))
-        })
-    }
-}
-
-fn streamlines(flow: &PlaneFlow, sections: &[Vec<[f64; 2]>], fastest: f64) -> Vec<Streamline> {
-    let Some(velocity) = flow.continued(|at| flow.plane.components(at.velocity)) else {
-        return Vec::new();
-    };
-    let direction = |point: [f64; 2]| {
-        let [u, v] = velocity.at(point);
-        let speed = u.hypot(v);
-        let moves = speed > STILL * fastest && !contains(sections, point);
-        moves.then(|| [u / speed, v / speed])
-    };
-    let size = flow.plane.size;
-    evenly_spaced(direction, size, size[0].max(size[1]) / STREAMLINES)
 }
 
 /// Whether an odd number of closed curves goes around a point.
@@ -291,80 +267,51 @@ fn contains(curves: &[Vec<[f64; 2]>], [x, y]: [f64; 2]) -> bool {
     crossings.count() % 2 == 1
 }
 
-fn lines_path(canvas: &Canvas, lines: &[Streamline], quantity: Quantity) -> Path {
-    let mut data = Data::new();
-    for line in lines {
-        let last = line.points.len() - 1;
-        let drawn = line.points.iter().enumerate();
-        let drawn = drawn.filter(|(k, _)| k % 2 == 0 || *k == last);
-        for (k, &point) in drawn {
-            let place = canvas.place(point);
-            data = if k == 0 {
-                data.move_to(place)
-            } else {
-                data.line_to(place)
-            };
-        }
+/// An arrowhead of a length and a half width, in the middle of its way and along it.
+fn arrow(data: Data, [from, to]: [[f64; 2]; 2], [length, half]: [f64; 2]) -> Data {
+    let [x, y] = [0, 1].map(|j| 0.5 * (from[j] + to[j]));
+    let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+    let norm = dx.hypot(dy);
+    if norm == 0.0 {
+        return data;
     }
+    let (dx, dy) = (dx / norm, dy / norm);
+    let corner = |along: f64, aside: f64| {
+        (
+            tenths(x + along * dx - aside * dy),
+            tenths(y + along * dy + aside * dx),
+        )
+    };
+    data.move_to(corner(0.5 * length, 0.0))
+        .line_to(corner(-0.5 * length, half))
+        .line_to(corner(-0.3 * length, 0.0))
+        .line_to(corner(-0.5 * length, -half))
+        .close()
+}
+
+/// Arrows to the heads of swimmers, in those that the plane cuts.
+fn heads_path(canvas: &Canvas, view: &View) -> Path {
+    let seen = view.heads.iter();
+    let seen = seen.filter(|ends| ends.iter().all(|&end| contains(&view.sections, end)));
+    let data = seen.fold(Data::new(), |data, ends| {
+        let [tail, tip] = ends.map(|end| canvas.exactly(end));
+        let way = [tip[0] - tail[0], tip[1] - tail[1]];
+        let length = way[0].hypot(way[1]);
+        let [size, half] = HEAD.map(|size| size.min(0.5 * length));
+        // The middle of the arrowhead, and where the shaft meets its notch.
+        let back = |by: f64| [0, 1].map(|j| tip[j] - by / length * way[j]);
+        let shaft = data
+            .move_to(<(f32, f32)>::from(tail.map(tenths)))
+            .line_to(<(f32, f32)>::from(back(0.8 * size).map(tenths)));
+        arrow(shaft, [back(size), tip], [size, half])
+    });
     Path::new()
-        .set("id", "streamlines")
+        .set("id", "heads")
         .set("d", data)
-        .set("fill", "none")
-        .set("stroke", ink(quantity))
-        .set("stroke-width", 1.1)
+        .set("fill", "#404040")
+        .set("stroke", "#404040")
+        .set("stroke-width", 1.2)
         .set("stroke-linejoin", "round")
-        .set("stroke-opacity", 0.8)
-}
-
-fn arrows_path(canvas: &Canvas, lines: &[Streamline], quantity: Quantity) -> Path {
-    let [length, half, apart] = ARROW;
-    let mut data = Data::new();
-    for Streamline { points, .. } in lines {
-        let pixels: Vec<(f32, f32)> = points.iter().map(|&point| canvas.place(point)).collect();
-        let step = points.windows(2).next().map_or(1.0, |pair| {
-            canvas.scale * (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1])
-        });
-        let count = ((points.len() as f64 * step / apart).round() as usize).max(1);
-        for k in 0..count {
-            let at = (2 * k + 1) * (points.len() - 1) / (2 * count);
-            let (Some(&(ax, ay)), Some(&(bx, by))) =
-                (pixels.get(at.saturating_sub(1)), pixels.get(at + 1))
-            else {
-                continue;
-            };
-            let (dx, dy) = (f64::from(bx - ax), f64::from(by - ay));
-            let norm = dx.hypot(dy);
-            if norm == 0.0 {
-                continue;
-            }
-            let (dx, dy) = (dx / norm, dy / norm);
-            let (x, y) = (f64::from(pixels[at].0), f64::from(pixels[at].1));
-            let corner = |along: f64, aside: f64| {
-                (
-                    tenths(x + along * dx - aside * dy),
-                    tenths(y + along * dy + aside * dx),
-                )
-            };
-            data = data
-                .move_to(corner(0.5 * length, 0.0))
-                .line_to(corner(-0.5 * length, half))
-                .line_to(corner(-0.3 * length, 0.0))
-                .line_to(corner(-0.5 * length, -half))
-                .close();
-        }
-    }
-    Path::new()
-        .set("id", "arrows")
-        .set("d", data)
-        .set("fill", ink(quantity))
-}
-
-/// Lines that can be seen on the colours.
-fn ink(quantity: Quantity) -> &'static str {
-    match quantity {
-        Quantity::Speed => "white",
-        Quantity::Pressure => "#333333",
-    }
 }
 
 fn sections_path(canvas: &Canvas, sections: &[Vec<[f64; 2]>]) -> Path {
@@ -401,6 +348,18 @@ fn rectangle([x, y, width, height]: [f64; 4]) -> Rectangle {
 fn outlined(corners: [f64; 4]) -> Rectangle {
     rectangle(corners)
         .set("fill", "none")
+        .set("stroke", "black")
+}
+
+/// The end of the bar of colours where values lie beyond it: a triangle from its edge to a tip.
+fn pointed_end([left, right]: [f64; 2], base: f64, tip: f64, colour: RGBColor) -> Path {
+    let corners = [[left, base], [0.5 * (left + right), tip], [right, base]];
+    let [a, b, c] = corners.map(|corner| <(f32, f32)>::from(corner.map(tenths)));
+    let RGBColor(red, green, blue) = colour;
+    Path::new()
+        .set("class", "beyond")
+        .set("d", Data::new().move_to(a).line_to(b).line_to(c).close())
+        .set("fill", format!("#{red:02x}{green:02x}{blue:02x}"))
         .set("stroke", "black")
 }
 

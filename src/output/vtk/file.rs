@@ -1,15 +1,21 @@
 //! What all files have in common.
 
 use nalgebra::Vector3;
-use vtkio::model::{Attribute, ByteOrder, DataArray, DataSet, Version, Vtk};
+use vtkio::model::{Attribute, ByteOrder, DataArray, DataSet, IOBuffer, Version, Vtk};
+use vtkio::xml::Compressor;
+
+use super::field::Field;
+
+/// From 1, fast, to 9, small: more than this gains little on doubles.
+const COMPRESSION: u32 = 3;
 
 /// Why there is no VTK file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cannot write the VTK file: {0}")]
 pub struct VtkError(String);
 
-/// The bytes of a file.
-pub(super) fn bytes(title: &str, data: DataSet) -> Result<Vec<u8>, VtkError> {
+/// The bytes of a file, compressed.
+pub(super) fn bytes(title: &str, data: DataSet, fields: &[Field]) -> Result<Vec<u8>, VtkError> {
     let file = Vtk {
         version: Version::new_xml(1, 0),
         title: title.to_owned(),
@@ -17,9 +23,13 @@ pub(super) fn bytes(title: &str, data: DataSet) -> Result<Vec<u8>, VtkError> {
         data,
         file_path: None,
     };
+    let failed = |error: vtkio::xml::Error| VtkError(error.to_string());
+    let file = file
+        .try_into_xml_format(Compressor::ZLib, COMPRESSION)
+        .map_err(failed)?;
     let mut bytes = Vec::new();
-    file.write_xml(&mut bytes)
-        .map_err(|error| VtkError(error.to_string()))?;
+    file.write(&mut bytes).map_err(failed)?;
+    Field::insert(fields, &mut bytes);
     Ok(bytes)
 }
 
@@ -32,4 +42,12 @@ pub(super) fn flat<'a>(vectors: impl IntoIterator<Item = &'a Vector3<f64>>) -> V
 /// A field of vectors at the points.
 pub(super) fn vectors(name: &str, values: &[Vector3<f64>]) -> Attribute {
     Attribute::DataArray(DataArray::vectors(name).with_vec(flat(values)))
+}
+
+/// A field of numbers at the points.
+pub(super) fn scalars<T>(name: &str, values: Vec<T>) -> Attribute
+where
+    IOBuffer: From<Vec<T>>,
+{
+    Attribute::DataArray(DataArray::scalars(name, 1).with_data(values))
 }

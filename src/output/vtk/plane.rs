@@ -1,9 +1,9 @@
 //! The flow in a plane.
 
 use nalgebra::Vector3;
-use vtkio::model::{Attribute, Attributes, DataArray, DataSet, Extent, Piece, StructuredGridPiece};
+use vtkio::model::{Attributes, DataSet, Extent, Piece, StructuredGridPiece};
 
-use super::file::{VtkError, bytes, flat, vectors};
+use super::file::{VtkError, bytes, flat, scalars, vectors};
 use crate::plane::PlaneFlow;
 
 /// What VTK calls a hidden point.
@@ -24,12 +24,11 @@ pub fn plane_file(flow: &PlaneFlow) -> Result<Vec<u8>, VtkError> {
         .collect();
     let inside: Vec<u8> = values().map(|value| u8::from(value.is_none())).collect();
     let hidden: Vec<u8> = inside.iter().map(|inside| HIDDEN * inside).collect();
-    let scalars = |name: &str| DataArray::scalars(name, 1);
     let point = vec![
         vectors("velocity", &velocity),
-        Attribute::DataArray(scalars("pressure").with_vec(pressure)),
-        Attribute::DataArray(scalars("inside").with_vec(inside)),
-        Attribute::DataArray(scalars("vtkGhostType").with_vec(hidden)),
+        scalars("pressure", pressure),
+        scalars("inside", inside),
+        scalars("vtkGhostType", hidden),
     ];
     let [columns, rows] = flow.plane.points.map(|count| count as i32 - 1);
     let extent = Extent::Ranges([0..=columns, 0..=rows, 0..=0]);
@@ -47,5 +46,5 @@ pub fn plane_file(flow: &PlaneFlow) -> Result<Vec<u8>, VtkError> {
         meta: None,
         pieces: vec![Piece::Inline(Box::new(piece))],
     };
-    bytes("flow in a plane", data)
+    bytes("flow in a plane", data, &[])
 }

@@ -5,20 +5,23 @@ use std::f64::consts::PI;
 use nalgebra::{Point3, Vector3};
 use panel_quadrature::QuadratureError;
 use vtkio::model::{
-    Attribute, Attributes, CellType, Cells, DataArray, DataSet, Piece, UnstructuredGridPiece,
-    VertexNumbers,
+    Attributes, CellType, Cells, DataSet, Piece, UnstructuredGridPiece, VertexNumbers,
 };
 
-use super::file::{VtkError, bytes, flat, vectors};
-use bodies_of_revolution::Topology;
+use super::field::Field;
+use super::file::{VtkError, bytes, flat, scalars, vectors};
+use bodies_of_revolution::{Frame, Topology};
 use stokes_body::discretization::Discretization;
 use stokes_body::flow::AXIAL;
 use stokes_body::flow::SurfaceStress;
 use stokes_body::progress::{Progress, Silent};
 use stokes_body::surface::SurfaceModes;
-use stokes_suspension::{Answer, BodyFlow, Flow, SuspensionError};
+use stokes_suspension::{Answer, BodyAnswer, BodyFlow, SuspensionError};
 
 /// The surfaces of bodies as closed meshes with what acts on them, in the laboratory.
+///
+/// The sum of weights times a field over a body's points is its integral over the surface, as good
+/// as the answer: of 1 the area, of the traction minus the force that the body exerts on the fluid.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     /// The vertices, body after body: the nodes of the generating curve, each turned to the
@@ -26,6 +29,8 @@ pub struct Mesh {
     pub points: Vec<Point3<f64>>,
     /// Outward unit normals of the surface itself.
     pub normals: Vec<Vector3<f64>>,
+    /// Every point's share of the area; the poles have none.
+    pub weights: Vec<f64>,
     /// Velocities of the surface, and of the fluid there.
     pub velocity: Vec<Vector3<f64>>,
     /// Force per area that the fluid exerts on the body, of the whole flow.
@@ -36,6 +41,8 @@ pub struct Mesh {
     pub body: Vec<u32>,
     /// Vertices of each cell, four or three, counterclockwise seen from outside.
     pub cells: Vec<Vec<u64>>,
+    /// What is known of whole bodies, and of all together.
+    fields: Vec<Field>,
 }
 
 impl Mesh {
@@ -44,7 +51,7 @@ impl Mesh {
     /// # Errors
     /// If a quadrature rule is missing.
     pub fn of_answer(answer: &Answer) -> Result<Self, SuspensionError> {
-        Self::of(&answer.flow, Self::azimuths, &Silent)
+        Self::of(answer, Self::azimuths, &Silent)
     }
 
     /// Azimuths that show the modes of a body: 64 to 512.
@@ -52,18 +59,23 @@ impl Mesh {
         (4 * body.disturbance.modes()).clamp(64, 512)
     }
 
-    /// The surfaces of all bodies in a flow, each with so many azimuths.
+    /// The surfaces of all bodies of an answer, each with so many azimuths. Integrals by weights
+    /// need more than twice as many as the body has modes.
     ///
     /// # Errors
     /// If a quadrature rule is missing, or the caller cancels.
     pub fn of(
-        flow: &Flow,
+        answer: &Answer,
         azimuths: impl Fn(&BodyFlow) -> usize,
         progress: &dyn Progress,
     ) -> Result<Self, SuspensionError> {
+        let flow = &answer.flow;
         let all: Vec<usize> = (0..flow.bodies().len()).collect();
         let stresses = flow.surface_stresses(&all, progress)?;
-        let mut mesh = Self::default();
+        let mut mesh = Self {
+            fields: fields(answer),
+            ..Self::default()
+        };
         for (number, (body, stress)) in (1..).zip(flow.bodies().iter().zip(stresses)) {
             mesh.add(body, number, stress, azimuths(body))?;
         }
@@ -81,14 +93,16 @@ impl Mesh {
         let velocity = body.surface_velocity();
         let (traction, pressure) = (&stress.traction, &stress.pressure_along_axis);
         let first = self.points.len();
+        let share = 2.0 * PI / azimuths as f64 * frame.scale().powi(2);
         // All four in the body's frame.
-        let mut add = |at: [Vector3<f64>; 4], pressure: f64| {
+        let mut add = |at: [Vector3<f64>; 4], pressure: f64, weight: f64| {
             let [point, normal, velocity, traction] = at;
             self.points.push(frame.point_to_lab(point.into()));
             self.normals.push(frame.vector_to_lab(normal));
             self.velocity.push(frame.vector_to_lab(velocity));
             self.traction.push(frame.vector_to_lab(traction));
             self.pressure.push(pressure);
+            self.weights.push(weight);
             self.body.push(number);
         };
         for (k, node) in nodes.nodes().iter().enumerate() {
@@ -105,6 +119,7 @@ impl Mesh {
                         turned(traction.at(k, theta)),
                     ],
                     pressure.at(k, theta)[AXIAL],
+                    share * node.weight,
                 );
             }
         }
@@ -119,6 +134,7 @@ impl Mesh {
                         pole.value(nodes, traction)?,
                     ],
                     pole.value(nodes, pressure)?.z,
+                    0.0,
                 );
             }
         }
@@ -159,10 +175,9 @@ impl Mesh {
                     vectors("traction", &self.traction),
                     vectors("velocity", &self.velocity),
                     vectors("normal", &self.normals),
-                    Attribute::DataArray(
-                        DataArray::scalars("pressure", 1).with_vec(self.pressure.clone()),
-                    ),
-                    Attribute::DataArray(DataArray::scalars("body", 1).with_vec(self.body.clone())),
+                    scalars("pressure", self.pressure.clone()),
+                    scalars("weight", self.weights.clone()),
+                    scalars("body", self.body.clone()),
                 ],
                 cell: Vec::new(),
             },
@@ -171,8 +186,35 @@ impl Mesh {
             meta: None,
             pieces: vec![Piece::Inline(Box::new(piece))],
         };
-        bytes("surfaces of the bodies", data)
+        bytes("surfaces of the bodies", data, &self.fields)
     }
+}
+
+/// Numbers of every body, in the laboratory and about its centre, and of all together.
+fn fields(answer: &Answer) -> Vec<Field> {
+    let of_all = |name, value: f64| Field::new(name, [[value]]);
+    let of_frames = |name, value: fn(&Frame) -> Vector3<f64>| {
+        let bodies = answer.flow.bodies().iter();
+        Field::new(name, bodies.map(|body| value(&body.frame).into()))
+    };
+    let of_bodies = |name, value: fn(&BodyAnswer) -> Vector3<f64>| {
+        Field::new(name, answer.bodies.iter().map(|body| value(body).into()))
+    };
+    let orientations = answer.flow.bodies().iter().map(|body| {
+        let q = body.frame.orientation();
+        [q.w, q.i, q.j, q.k]
+    });
+    vec![
+        of_all("viscosity", answer.flow.viscosity()),
+        of_all("estimated_error", answer.error_estimate),
+        of_frames("center", |frame| frame.center().coords),
+        of_frames("axis", |frame| *frame.axis()),
+        Field::new("orientation_wxyz", orientations),
+        of_bodies("body_velocity", |body| body.motion.velocity),
+        of_bodies("body_angular_velocity", |body| body.motion.angular_velocity),
+        of_bodies("force_on_fluid", |body| body.wrench.force),
+        of_bodies("torque_on_fluid", |body| body.wrench.torque),
+    ]
 }
 
 /// Quadrilaterals between neighbouring rings of vertices, and either triangles around the two poles

@@ -320,8 +320,11 @@ impl SurfaceModes {
     /// The field's cylindrical components at node `k` and azimuth `theta`.
     pub fn at(&self, k: usize, theta: f64) -> [f64; 3] {
         let mut value = [0.0; 3];
+        let first = Complex64::cis(theta);
+        let mut turn = Complex64::from(1.0);
         for n in 0..self.modes {
-            let (sin, cos) = (n as f64 * theta).sin_cos();
+            let Complex64 { re: cos, im: sin } = turn;
+            turn *= first;
             for (j, value) in value.iter_mut().enumerate() {
                 let (first, second) = (self.component(n, 0, j)[k], self.component(n, 1, j)[k]);
                 *value += if j == 1 {

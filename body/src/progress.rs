@@ -8,6 +8,10 @@ pub trait Progress: Sync {
     /// This many more steps of the stage are done.
     fn advance(&self, steps: usize);
 
+    /// Another solution begins, the `round`-th to the same question, finer than the one before,
+    /// which has this estimated error.
+    fn next_round(&self, _round: usize, _error_estimate: f64) {}
+
     /// Whether the computation should stop: long ones end with an error soon after.
     fn is_cancelled(&self) -> bool {
         false

@@ -104,11 +104,15 @@ impl Progress for StderrBar {
         self.show_if_late();
     }
 
-    fn next_round(&self, round: usize, error: f64) {
+    fn begin_round(&self, round: usize, error: Option<f64>) {
+        let Some(error) = error else {
+            self.bar.set_prefix("");
+            return;
+        };
         self.bar
             .set_prefix(format!("round {round} (error so far {error:.0e}): "));
         self.say(PAUSE, || {
-            let ended = round - 1;
+            let ended = round.saturating_sub(1);
             format!(
                 "round {ended}: estimated error {error:.1e}, going on with finer panels or modes"
             )

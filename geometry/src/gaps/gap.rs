@@ -122,7 +122,8 @@ impl Gap {
     }
 }
 
-/// What is wrong with the places of bodies; they are named by their index in the slice, `bodies[0]` first.
+/// What is wrong with the places of bodies; they are named by their index in the slice, `bodies[0]`
+/// first.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ContactError {

@@ -720,6 +720,7 @@ fn arguments_that_make_no_sense() {
         &["solve"][..],
         &["slove", "case.toml"],
         &["solve", "case.toml", "--jsn"],
+        &["solve", "case.toml", "--csv"],
         &["--threads", "many", "solve", "case.toml"],
         &["--threads", "1000000000", "solve", "case.toml"],
         &["simulate", "case.toml", "--resume"],
@@ -733,8 +734,17 @@ fn arguments_that_make_no_sense() {
         let line = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {line}");
         assert_eq!(line.lines().count(), 1, "{arguments:?}: {line}");
-        assert!(output.stdout.is_empty());
+        assert!(output.stdout.is_empty() && !line.contains("to pass"));
     }
+    let output = Command::new(env!("CARGO_BIN_EXE_axistokes"))
+        .arg("case.toml")
+        .output()
+        .unwrap();
+    let line = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        line.contains("expected axistokes solve case.toml"),
+        "{line}"
+    );
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! From a case to the resistance of its shapes.
 
 use crate::case::{Accuracy, Case};
-use crate::output::{ResistanceReport, ShapeReport};
+use crate::output::{Input, ResistanceReport, ShapeReport};
 use crate::solve::SolveError;
 use bodies_of_revolution::Panels;
 use stokes_body::error::BodyError;
@@ -36,10 +36,15 @@ pub fn resistance(case: &Case, progress: &dyn Progress) -> Result<ResistanceRepo
             BodyError::Curve(error) => at_shape(&error),
             other => SolveError::Failed(other.to_string()),
         })?;
-        shapes.push(ShapeReport::new(name, &matrices, case.viscosity));
+        shapes.push(ShapeReport::new(
+            name,
+            &shape.value,
+            &matrices,
+            case.viscosity,
+        ));
     }
     Ok(ResistanceReport {
-        viscosity: case.viscosity,
+        input: Input::of(case),
         shapes,
     })
 }

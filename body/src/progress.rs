@@ -8,6 +8,10 @@ pub trait Progress: Sync {
     /// This many more steps of the stage are done.
     fn advance(&self, steps: usize);
 
+    /// A solution begins, the `round`-th (from 1) to its question. The one before it has this
+    /// estimated error, and is not good enough.
+    fn begin_round(&self, _round: usize, _error_estimate: Option<f64>) {}
+
     /// Whether the computation should stop: long ones end with an error soon after.
     fn is_cancelled(&self) -> bool {
         false

@@ -317,7 +317,8 @@ impl SurfaceModes {
         &mut self.values[6 * n * self.nodes..][..6 * self.nodes]
     }
 
-    /// The field's cylindrical components at node `k` and azimuth `theta`.
+    /// The field's cylindrical components (radial, azimuthal, axial) at node `k` and azimuth
+    /// `theta`, in the body's frame.
     pub fn at(&self, k: usize, theta: f64) -> [f64; 3] {
         let mut value = [0.0; 3];
         let first = Complex64::cis(theta);

@@ -14,6 +14,9 @@ pub struct RigidMotion {
 }
 
 /// Force and torque about a point.
+///
+/// On whom is said where one is used: of an answer, it is what the body exerts on the fluid; of a
+/// question, what is exerted on the body from outside. For a free body both are the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wrench {
     /// Force.

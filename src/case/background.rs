@@ -3,13 +3,15 @@
 use super::CaseError;
 use super::node::Node;
 use super::section::Section;
+use serde::{Deserialize, Serialize};
 
 /// How far from orthogonal, or from free of divergence, a flow may be: relative rounding of its
 /// given digits.
 const SLACK: f64 = 1e-12;
 
 /// A flow `U + G x` that the bodies disturb.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Background {
     /// The same velocity everywhere.

@@ -69,9 +69,9 @@ pub(super) fn read_bodies(
     if items.is_empty() {
         return Err(node.error("no bodies: expected at least one [[bodies]]"));
     }
-    items
-        .into_iter()
-        .map(|item| read_body(item, shapes))
+    (1..)
+        .zip(items)
+        .map(|(number, item)| read_body(item.of_body(number), shapes))
         .collect()
 }
 

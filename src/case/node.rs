@@ -1,4 +1,6 @@
 //! A value of the case's tree that knows its key and its line, and the readers of the simple types.
+//!
+//! Below a body keys begin anew, and messages begin with the body's number: `body 2: slip.kind`.
 
 use super::source::Source;
 use super::{CaseError, Located};
@@ -12,10 +14,13 @@ const LARGEST: f64 = 1e30;
 /// The smallest a quantity that must be positive may be.
 const SMALLEST: f64 = 1e-30;
 
-/// One value with the key that leads to it, such as `shapes.rod.polar`.
+/// One value with the key that leads to it, such as `shapes.rod.polar`, or from its body such as
+/// `slip.kind`.
 #[derive(Clone)]
 pub(super) struct Node<'a> {
-    pub(super) source: &'a Source<'a>,
+    source: &'a Source<'a>,
+    /// The number of the body that it belongs to, from 1.
+    body: Option<usize>,
     pub(super) key: String,
     pub(super) line: usize,
     content: Content<'a>,
@@ -34,6 +39,7 @@ impl<'a> Node<'a> {
     {
         Self {
             source,
+            body: None,
             key: String::new(),
             line: 1,
             content: Content::Root(document),
@@ -49,9 +55,19 @@ impl<'a> Node<'a> {
     ) -> Self {
         Self {
             source: self.source,
+            body: self.body,
             key,
             line: self.source.line(place.start),
             content: Content::Value(value),
+        }
+    }
+
+    /// The same as the table of a body.
+    pub(super) fn of_body(self, number: usize) -> Self {
+        Self {
+            body: Some(number),
+            key: String::new(),
+            ..self
         }
     }
 
@@ -75,6 +91,10 @@ impl<'a> Node<'a> {
         let message = match &self.content {
             Content::Value(value) => match value.get_ref() {
                 DeValue::Table(_) => format!("{} is a table: expected {what}", self.key),
+                _ if self.key.is_empty() => {
+                    let quoted = self.source.quote(value.span());
+                    format!("{quoted}: expected {what}")
+                }
                 _ => {
                     let quoted = self.source.quote(value.span());
                     format!("{} = {quoted}: expected {what}", self.key)
@@ -82,12 +102,29 @@ impl<'a> Node<'a> {
             },
             Content::Root(_) => format!("expected {what}"),
         };
-        self.source.error(Some(self.line), message)
+        self.error(message)
     }
 
     /// An error at this node in other words.
     pub(super) fn error(&self, message: impl Display) -> CaseError {
-        self.source.error(Some(self.line), message)
+        self.error_at(Some(self.line), message)
+    }
+
+    /// An error at the line of a byte of the file.
+    pub(super) fn error_at_byte(&self, byte: usize, message: impl Display) -> CaseError {
+        self.error_at(Some(self.source.line(byte)), message)
+    }
+
+    /// An error of the whole file.
+    pub(super) fn error_of_file(&self, message: impl Display) -> CaseError {
+        self.error_at(None, message)
+    }
+
+    fn error_at(&self, line: Option<usize>, message: impl Display) -> CaseError {
+        match self.body {
+            Some(number) => (self.source).error(line, format!("body {number}: {message}")),
+            None => self.source.error(line, message),
+        }
     }
 
     pub(super) fn table(&self) -> Result<&'a DeTable<'a>, CaseError> {
@@ -100,6 +137,7 @@ impl<'a> Node<'a> {
                         "{} is an array of tables: expected one table, [{}]",
                         self.key, self.key
                     ))),
+                _ if self.key.is_empty() => Err(self.expected("a table, [[bodies]]")),
                 _ => Err(self.expected(format!("a table, [{}]", self.key))),
             },
         }

@@ -61,7 +61,7 @@ impl Case {
     }
 
     fn from_root(root: &Section<'_>, path: &Path) -> Result<Self, CaseError> {
-        let missing = |what| root.node.source.error(None, what);
+        let missing = |what| root.node.error_of_file(what);
         let viscosity = root.read("viscosity", |node| node.positive("a viscosity"))?;
         let solver = root.read("solver", |node| read_solver(node.clone()))?;
         let memory = solver.as_ref().and_then(|solver| solver.memory);

@@ -2,7 +2,7 @@
 
 use super::CaseError;
 use super::node::Node;
-use super::suggest::{hint, nearest};
+use super::suggest::{hint, nearest, not_built};
 use toml::de::DeTable;
 
 /// A table in which only known keys occur.
@@ -33,13 +33,12 @@ impl<'a> Section<'a> {
             .filter(|key| !known.contains(&key.get_ref().as_ref()))
             .min_by_key(|key| key.span().start);
         let Some(key) = unknown else { return Ok(()) };
-        let line = self.node.source.line(key.span().start);
-        let message = format!(
-            "unknown key {}{}",
-            self.path(key.get_ref()),
-            hint(key.get_ref(), known)
-        );
-        Err(self.node.source.error(Some(line), message))
+        let path = self.path(key.get_ref());
+        let message = match not_built(key.get_ref()) {
+            Some(what) => format!("unknown key {path}: {what}"),
+            None => format!("unknown key {path}{}", hint(key.get_ref(), known)),
+        };
+        Err(self.node.error_at_byte(key.span().start, message))
     }
 
     /// The value of `key`, if given.

@@ -4,6 +4,7 @@ use super::file::check_regular;
 use super::node::Node;
 use super::section::Section;
 use super::{CaseError, Located};
+use serde::{Deserialize, Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -22,7 +23,8 @@ const KINDS: &[(&str, &[&str])] = &[
 
 /// A generating curve with validated numbers: symmetry axis z, centred at the origin, lengths in
 /// units of the case.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum ShapeSpec {
     /// A sphere.
@@ -66,8 +68,14 @@ pub enum ShapeSpec {
     Profile {
         /// Path of an existing regular file with columns `r,z`; already resolved against the folder
         /// of the case.
+        #[serde(serialize_with = "as_text")]
         file: PathBuf,
     },
+}
+
+/// A path as text, also one that is not UTF-8.
+fn as_text<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(&path.display())
 }
 
 /// Reads `[shapes.NAME]`; `folder` is where the case lies.

@@ -4,9 +4,11 @@ use super::CaseError;
 use super::node::Node;
 use super::section::Section;
 use super::shape::ShapeSpec;
+use serde::{Deserialize, Serialize};
 
 /// A tangential velocity of the surface, in the frame of the body.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Slip {
     /// Squirming modes of a sphere.

@@ -3,13 +3,65 @@
 /// The longest name that is compared or shown, in characters.
 const LONGEST: usize = 40;
 
-/// The known name nearest to `given`, if it is near enough to be a typing error or the plural of
-/// it.
+/// What other programs and books call a thing, and what it is called here.
+const OTHER_WORDS: &[(&str, &str)] = &[
+    ("accuracy", "tolerance"),
+    ("ball", "sphere"),
+    ("cylinder", "capsule"),
+    ("diameter", "radius"),
+    ("direction", "axis"),
+    ("ellipsoid", "spheroid"),
+    ("eps", "tolerance"),
+    ("eta", "viscosity"),
+    ("flow", "background"),
+    ("location", "center"),
+    ("mu", "viscosity"),
+    ("omega", "angular_velocity"),
+    ("origin", "center"),
+    ("points", "probes"),
+    ("pos", "center"),
+    ("position", "center"),
+    ("quaternion", "orientation"),
+    ("ring", "torus"),
+    ("rod", "capsule"),
+    ("rotation", "orientation"),
+    ("size", "scale"),
+    ("spherocylinder", "capsule"),
+    ("spin", "angular_velocity"),
+    ("tol", "tolerance"),
+    ("type", "kind"),
+];
+
+/// What is asked for now and then, and is not built.
+const NOT_BUILT: &[(&[&str], &str)] = &[
+    (
+        &["wall", "walls", "plane_wall", "boundary", "boundaries"],
+        "walls are not supported, the fluid has no boundary but the bodies",
+    ),
+    (
+        &["box", "cell", "domain", "period", "periodic"],
+        "boxes are not supported, the fluid extends to infinity",
+    ),
+];
+
+/// Why there is no key of this name, if there is more to say than that it is unknown.
+pub(super) fn not_built(given: &str) -> Option<&'static str> {
+    let entry = NOT_BUILT.iter().find(|(names, _)| names.contains(&given));
+    entry.map(|(_, why)| *why)
+}
+
+/// The known name that was meant by `given`: another word for it, or the nearest one, if it is near
+/// enough to be a typing error or the plural of it.
 pub(super) fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
     if given.len() > LONGEST {
         return None;
     }
     let given = given.to_lowercase();
+    let other_words = OTHER_WORDS.iter().filter(|(word, _)| *word == given);
+    let word_for = |name: &&&str| other_words.clone().any(|(_, meant)| meant == *name);
+    if let Some(name) = known.iter().find(word_for) {
+        return Some(name);
+    }
     known
         .iter()
         .filter(|name| name.len() <= LONGEST)
@@ -90,6 +142,14 @@ mod tests {
         assert_eq!(nearest("probe", &known), Some("probes"));
         assert_eq!(nearest("velocities", &known), Some("velocity"));
         assert_eq!(nearest("axes", &known), Some("axis"));
+    }
+
+    #[test]
+    fn other_words_are_known() {
+        assert_eq!(nearest("diameter", &["kind", "radius"]), Some("radius"));
+        assert_eq!(nearest("diameter", &["kind", "polar"]), None);
+        assert_eq!(nearest("position", &["shape", "center"]), Some("center"));
+        assert!(not_built("wall").is_some() && not_built("bodies").is_none());
     }
 
     #[test]

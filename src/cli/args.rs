@@ -135,7 +135,7 @@ pub struct Gaps {
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
     /// Show pairs that are no farther apart; if not given, than the size of the larger one.
-    #[arg(long, value_name = "LENGTH")]
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true)]
     pub within: Option<f64>,
     /// Print one JSON object and nothing else on stdout.
     #[arg(long)]
@@ -196,6 +196,13 @@ pub struct Converge {
     pub tiny: bool,
 }
 
+/// Zero or a positive length.
+fn length(text: &str) -> Result<f64, String> {
+    let length = text.parse::<f64>().ok();
+    let length = length.filter(|length| *length >= 0.0 && length.is_finite());
+    length.ok_or_else(|| "expected a length, zero or more".into())
+}
+
 /// Nodes per panel for which there are quadrature rules.
 fn order(text: &str) -> Result<usize, String> {
     match text {
@@ -207,11 +214,22 @@ fn order(text: &str) -> Result<usize, String> {
 
 /// Prints help or version on stdout; an error of usage as one line on stderr.
 pub fn explain(message: &clap::Error) -> ExitCode {
-    use clap::error::ErrorKind;
+    use clap::error::{ContextKind, ContextValue, ErrorKind};
     if message.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
         streams::complain(
-            "no command: expected solve, resistance, converge or --help (see axistokes --help)",
+            "no command: expected solve, resistance, grand, gaps, converge or --help \
+             (see axistokes --help)",
         );
+        return ExitCode::from(2);
+    }
+    if let (ErrorKind::InvalidSubcommand, Some(ContextValue::String(word))) =
+        (message.kind(), message.get(ContextKind::InvalidSubcommand))
+        && word.ends_with(".toml")
+    {
+        streams::complain(&format!(
+            "no command: expected axistokes solve {} (see axistokes --help)",
+            word.escape_default()
+        ));
         return ExitCode::from(2);
     }
     if !message.use_stderr() {
@@ -222,6 +240,8 @@ pub fn explain(message: &clap::Error) -> ExitCode {
     let text = message.to_string();
     let hint = ["Usage:", "For more information"];
     let lines = (text.lines()).take_while(|line| !hint.iter().any(|hint| line.starts_with(hint)));
+    // How to pass what is no option as a value: nobody means that here.
+    let lines = lines.filter(|line| !line.trim_start().starts_with("tip: to pass"));
     let words: Vec<&str> = lines.flat_map(str::split_whitespace).collect();
     let line = words.join(" ");
     let line = line.trim_start_matches("error: ");

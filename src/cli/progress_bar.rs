@@ -1,36 +1,50 @@
-//! Progress on stderr, for people who wait.
+//! Progress on stderr, for people who wait: a bar at a terminal, now and then a line elsewhere.
 
 use super::failure::{Failure, INTERRUPTED_STATUS};
+use super::streams;
 use axistokes::progress::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{IsTerminal, stderr};
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// How long a computation stays quiet.
 const PATIENCE: Duration = Duration::from_secs(2);
+/// How long it is quiet after a line, at least.
+const PAUSE: Duration = Duration::from_secs(2);
+/// The same before a line that only says that it goes on; and the part of the time that has passed
+/// that is added, so that no night's run fills a log.
+const LONG_PAUSE: Duration = Duration::from_secs(5);
+const LONGER: f64 = 0.05;
 
 /// Whether Ctrl-C was pressed.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// A bar on stderr: only if that is a terminal, and only after two seconds.
+/// A bar on stderr, or lines if that is no terminal; both only after two seconds.
 pub struct StderrBar {
     bar: ProgressBar,
     start: Instant,
+    /// A bar that is not shown yet.
     hidden: AtomicBool,
+    /// When the last line was written, if lines are.
+    last_line: Option<Mutex<Option<Instant>>>,
 }
 
 impl StderrBar {
     /// A bar that is not shown yet.
     pub fn new() -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
-        if let Ok(style) = ProgressStyle::with_template("{msg:10} {wide_bar} {pos}/{len} {eta}") {
+        let template = "{prefix}{msg:10} {wide_bar} {pos}/{len} {eta}";
+        if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style);
         }
+        let terminal = stderr().is_terminal();
         Self {
             bar,
             start: Instant::now(),
-            hidden: AtomicBool::new(stderr().is_terminal()),
+            hidden: AtomicBool::new(terminal),
+            last_line: (!terminal).then(|| Mutex::new(None)),
         }
     }
 
@@ -52,6 +66,28 @@ impl StderrBar {
         {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
         }
+        let long = LONG_PAUSE + self.start.elapsed().mul_f64(LONGER);
+        self.say(long, || {
+            let (stage, round) = (self.bar.message(), self.bar.prefix());
+            let part = match (self.bar.position(), self.bar.length()) {
+                (done, Some(all)) if all > 0 => format!(" {} %", 100 * done.min(all) / all),
+                _ => String::new(),
+            };
+            format!("{round}{stage}{part}")
+        });
+    }
+
+    /// Writes a line, if it is time for one: this long after the last.
+    fn say(&self, pause: Duration, line: impl FnOnce() -> String) {
+        // Whoever finds it locked would only say the same once more.
+        let Some(Ok(mut last)) = self.last_line.as_ref().map(Mutex::try_lock) else {
+            return;
+        };
+        let waited = last.is_none_or(|last| last.elapsed() > pause);
+        if waited && self.start.elapsed() > PATIENCE && !self.is_cancelled() {
+            streams::complain(&line());
+            *last = Some(Instant::now());
+        }
     }
 }
 
@@ -66,6 +102,21 @@ impl Progress for StderrBar {
     fn advance(&self, steps: usize) {
         self.bar.inc(steps as u64);
         self.show_if_late();
+    }
+
+    fn begin_round(&self, round: usize, error: Option<f64>) {
+        let Some(error) = error else {
+            self.bar.set_prefix("");
+            return;
+        };
+        self.bar
+            .set_prefix(format!("round {round} (error so far {error:.0e}): "));
+        self.say(PAUSE, || {
+            let ended = round.saturating_sub(1);
+            format!(
+                "round {ended}: estimated error {error:.1e}, going on with finer panels or modes"
+            )
+        });
     }
 
     fn is_cancelled(&self) -> bool {

@@ -1,10 +1,22 @@
 //! The answer to a case.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
+
+use super::{Imposed, Input, Place};
+use crate::case::{Background, ShapeSpec};
 
 /// Everything one solve reports; as JSON it is the contract of `axistokes solve --json`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Report {
+    /// What was asked, of the whole case.
+    #[serde(flatten)]
+    pub input: Input,
+    /// The undisturbed flow, in the words of the case; none if the fluid is at rest.
+    pub background: Option<Background>,
+    /// The shapes by name, in the words of the case.
+    pub shapes: BTreeMap<String, ShapeSpec>,
     /// One entry per body, in the order of the case.
     pub bodies: Vec<BodyReport>,
     /// One entry per probe, in the order of the case.
@@ -12,6 +24,8 @@ pub struct Report {
     /// Estimated error: of the velocities at the probes relative to the largest speed imposed, and
     /// of forces, torques and rigid velocities relative to their largest value.
     pub error_estimate: f64,
+    /// The largest speed on the surfaces of all bodies, imposed or found.
+    pub largest_speed: f64,
     /// Estimated error of the pressures at the probes, absolute.
     pub pressure_error_estimate: f64,
     /// Iterations of the linear solver; 0 for a direct solve.
@@ -38,8 +52,13 @@ pub struct Report {
 }
 
 /// Motion and load of one body, in the laboratory frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BodyReport {
+    /// Where it is.
+    #[serde(flatten)]
+    pub place: Place,
+    /// What was imposed on it; not in a case with `[test]`, whose known flow takes its place.
+    pub imposed: Option<Imposed>,
     /// Velocity of the centre.
     pub velocity: [f64; 3],
     /// Angular velocity.
@@ -128,51 +147,51 @@ pub struct KnownFlowReport {
 }
 
 impl Report {
-    /// The name of the first number that is infinite or not a number: such a report must not be
-    /// shown.
+    /// Which number is the first that is infinite or not a number, if one is: such a report must
+    /// not be shown.
     pub fn not_finite(&self) -> Option<String> {
         let finite = |v: &[f64; 3]| v.iter().all(|x| x.is_finite());
-        for (i, body) in self.bodies.iter().enumerate() {
+        for (number, body) in (1..).zip(&self.bodies) {
             let quantities = [
                 ("velocity", &body.velocity),
-                ("angular_velocity", &body.angular_velocity),
+                ("angular velocity", &body.angular_velocity),
                 ("force", &body.force),
                 ("torque", &body.torque),
             ];
             if let Some((name, _)) = quantities.iter().find(|(_, v)| !finite(v)) {
-                return Some(format!("bodies[{i}].{name}"));
+                return Some(format!("{name} of body {number}"));
             }
             if !body.stresslet.iter().all(finite) {
-                return Some(format!("bodies[{i}].stresslet"));
+                return Some(format!("stresslet of body {number}"));
             }
             if !body.stresslet_error_estimate.is_finite() {
-                return Some(format!("bodies[{i}].stresslet_error_estimate"));
+                return Some(format!("error estimate of the stresslet of body {number}"));
             }
             if [body.power, body.power_error_estimate]
                 .iter()
                 .flatten()
                 .any(|x| !x.is_finite())
             {
-                return Some(format!("bodies[{i}].power"));
+                return Some(format!("power of body {number}"));
             }
         }
-        for (i, probe) in self.probes.iter().enumerate() {
+        for (number, probe) in (1..).zip(&self.probes) {
             if !finite(&probe.velocity) {
-                return Some(format!("probes[{i}].velocity"));
+                return Some(format!("velocity at probe {number}"));
             }
             if !probe.pressure.is_finite() {
-                return Some(format!("probes[{i}].pressure"));
+                return Some(format!("pressure at probe {number}"));
             }
         }
         if !self.error_estimate.is_finite() {
-            return Some("error_estimate".into());
+            return Some("error estimate".into());
         }
         if !self.pressure_error_estimate.is_finite() {
-            return Some("pressure_error_estimate".into());
+            return Some("error estimate of the pressures".into());
         }
         let test = self.test.unwrap_or_default();
         if !(test.absolute_error.is_finite() && test.relative_error.is_finite()) {
-            return Some("test".into());
+            return Some("error against the known flow".into());
         }
         None
     }
@@ -206,18 +225,25 @@ mod tests {
         let mut keys: Vec<_> = value.as_object().unwrap().keys().collect();
         keys.sort();
         let expected = [
+            "background",
             "bodies",
+            "case",
             "discretization",
             "error_estimate",
             "iterations",
+            "largest_speed",
             "points",
             "pressure_error_estimate",
             "probes",
             "products",
             "residual",
+            "shapes",
             "stop",
             "timings",
+            "tolerance",
             "unknowns",
+            "version",
+            "viscosity",
         ];
         assert_eq!(keys, expected);
         assert!(json.contains("[0.1,0.3333333333333333,3.141592653589793]"));
@@ -242,6 +268,6 @@ mod tests {
         };
         assert_eq!(report.not_finite(), None);
         report.bodies[0].torque[1] = f64::NAN;
-        assert_eq!(report.not_finite().unwrap(), "bodies[0].torque");
+        assert_eq!(report.not_finite().unwrap(), "torque of body 1");
     }
 }

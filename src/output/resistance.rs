@@ -6,16 +6,18 @@ use std::fmt::{self, Write};
 use nalgebra::Matrix6;
 use serde::{Deserialize, Serialize};
 
-use super::table::{number, numbers};
-use super::{Discretization, error_line};
-use crate::case::Case;
+use super::digits::Known;
+use super::table::exact;
+use super::{Discretization, Input, error_line};
+use crate::case::{Case, ShapeSpec};
 use stokes_body::resistance::{RigidBodyMatrices, ScalarFunctions};
 
 /// What `axistokes resistance` reports.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ResistanceReport {
-    /// The viscosity that the matrices are for.
-    pub viscosity: f64,
+    /// What was asked, with the viscosity that the matrices are for.
+    #[serde(flatten)]
+    pub input: Input,
     /// One entry per shape of the case, by name.
     pub shapes: Vec<ShapeReport>,
 }
@@ -44,6 +46,8 @@ pub struct ShapeReport {
     /// Estimated error of every entry (i, j) of the matrices relative to the root of the product of
     /// entries (i, i) and (j, j).
     pub error_estimate: f64,
+    /// The shape in the words of the case.
+    pub definition: Option<ShapeSpec>,
     /// The shape's name, and how it was discretised.
     #[serde(flatten)]
     pub discretization: Discretization,
@@ -61,7 +65,12 @@ fn rows(matrix: Matrix6<f64>) -> [[f64; 6]; 6] {
 
 impl ShapeReport {
     /// The report of a shape that was computed for viscosity 1.
-    pub fn new(shape: &str, matrices: &RigidBodyMatrices, viscosity: f64) -> Self {
+    pub fn new(
+        shape: &str,
+        definition: &ShapeSpec,
+        matrices: &RigidBodyMatrices,
+        viscosity: f64,
+    ) -> Self {
         let values = |f: ScalarFunctions| [f.xa, f.ya, f.yb, f.xc, f.yc];
         let of_resistance = values(matrices.resistance.scalar_functions());
         let of_mobility = values(matrices.mobility.scalar_functions());
@@ -79,6 +88,7 @@ impl ShapeReport {
             bretherton_constant: matrices.free.bretherton_constant(),
             center_of_reaction: matrices.resistance.center_of_reaction().into(),
             error_estimate: matrices.error_estimate,
+            definition: Some(definition.clone()),
             discretization: Discretization {
                 shape: shape.to_owned(),
                 panels: matrices.resolution.panels.len(),
@@ -127,7 +137,7 @@ impl ResistanceReport {
             out,
             "{}: viscosity {}, everything in the units of the case",
             case.path.display(),
-            case.viscosity
+            exact(case.viscosity)
         )?;
         writeln!(
             out,
@@ -151,23 +161,27 @@ impl ShapeReport {
             d.order,
             error_line(case, self.error_estimate)
         )?;
-        for (name, value) in &self.functions {
-            writeln!(out, "  {name} {}", number(*value))?;
+        for (name, &value) in &self.functions {
+            writeln!(out, "  {name} {}", self.known_function(name).number(value))?;
         }
+        // Of order one, but for the centre, which is as far away as the body is large.
+        let [across, turning] = [self.resistance[0][0], self.resistance[3][3]];
+        let length = (turning / across).sqrt();
+        let known = |scale| Known::relative(self.error_estimate, scale);
         writeln!(
             out,
             "  centre of reaction {}",
-            numbers(&self.center_of_reaction)
+            known(length).row(&self.center_of_reaction, &[])
         )?;
         writeln!(
             out,
             "  intrinsic viscosity {}",
-            number(self.intrinsic_viscosity)
+            known(1.0).number(self.intrinsic_viscosity)
         )?;
         writeln!(
             out,
             "  Bretherton constant {}",
-            number(self.bretherton_constant)
+            known(1.0).number(self.bretherton_constant)
         )?;
         for (name, matrix) in [
             (
@@ -180,10 +194,28 @@ impl ShapeReport {
             ),
         ] {
             writeln!(out, "  {name}")?;
-            for row in matrix {
-                writeln!(out, "  {}", numbers(row))?;
+            for (i, row) in matrix.iter().enumerate() {
+                let entry =
+                    |(j, &x): (usize, &f64)| known((matrix[i][i] * matrix[j][j]).sqrt()).number(x);
+                let entries: Vec<String> = row.iter().enumerate().map(entry).collect();
+                writeln!(out, "  {}", entries.join("  "))?;
             }
         }
         Ok(())
+    }
+
+    /// How well a function is known: relative to the root of the product of the two that it couples
+    /// if it is one that couples, else to itself.
+    fn known_function(&self, name: &str) -> Known {
+        let [first, second] = match name {
+            "YB" => ["YA", "YC"],
+            "yb" => ["ya", "yc"],
+            "XG" => ["XA", "XM"],
+            "YG" => ["YA", "YM"],
+            "YH" => ["YC", "YM"],
+            itself => [itself; 2],
+        };
+        let value = |name| self.functions.get(name).copied().unwrap_or_default();
+        Known::relative(self.error_estimate, (value(first) * value(second)).sqrt())
     }
 }

@@ -1,7 +1,9 @@
 //! The answer as a table for people.
 
-use super::{BodyReport, Discretization, KnownFlowReport, ProbeReport, Report, Stop};
-use crate::case::Case;
+use super::digits::Known;
+use super::scales::{Scales, norm};
+use super::{BodyReport, Discretization, KnownFlowReport, Report, Stop};
+use crate::case::{Body, Case, Component};
 use std::fmt::{self, Write};
 
 /// The most bodies that the table shows one by one, unless told to show all.
@@ -21,7 +23,7 @@ fn write_table(out: &mut String, case: &Case, report: &Report, all: bool) -> fmt
         out,
         "{}: viscosity {}, everything in the units of the case",
         case.path.display(),
-        case.viscosity
+        exact(case.viscosity)
     )?;
     write_error(out, case, report)?;
     if let Some(test) = &report.test {
@@ -33,7 +35,7 @@ fn write_table(out: &mut String, case: &Case, report: &Report, all: bool) -> fmt
         write_summary(out, report)?;
     }
     if !report.probes.is_empty() {
-        write_probes(out, &report.probes, report.pressure_error_estimate)?;
+        write_probes(out, report)?;
     }
     write_discretization(out, &report.discretization)?;
     let (stop, residual) = (report.stop, report.residual.unwrap_or_default());
@@ -55,7 +57,7 @@ fn write_table(out: &mut String, case: &Case, report: &Report, all: bool) -> fmt
     let t = &report.timings;
     writeln!(
         out,
-        "seconds: assemble {:.3}, factor {:.3}, solve {:.3}, evaluate {:.3}, error estimate {:.3}",
+        "seconds: assemble {:.3}, factor {:.3}, solve {:.3}, evaluate {:.3}, error estimate and the rest {:.3}",
         t.assemble, t.factor, t.iterate, t.evaluate, t.estimate
     )
 }
@@ -73,9 +75,9 @@ pub(super) fn error_line(case: &Case, estimate: f64) -> String {
 fn write_error(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
     writeln!(out, "{}", error_line(case, report.error_estimate))?;
     let relative = if case.bodies.len() == 1 {
-        "(velocities at probes: relative to the largest speed imposed; forces, torques and rigid velocities: to their largest)"
+        "(relative: velocities at probes to the largest speed, force and torque to the larger of them, the motion to itself)"
     } else {
-        "(velocities: relative to the largest speed; forces, and torques over sizes: to the largest of them)"
+        "(relative: velocities to the largest speed; forces, and torques over sizes, to the largest of them)"
     };
     writeln!(out, "  {relative}")
 }
@@ -100,31 +102,15 @@ fn write_bodies(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
         "{:>6}  {:width$}  {:16}  {:>20}  {:>20}  {:>20}",
         "body", "shape", "quantity", "x", "y", "z"
     )?;
+    let scales = Scales::new(report);
     for (i, (body, answer)) in case.bodies.iter().zip(&report.bodies).enumerate() {
-        let [along_x, along_y, along_z] = &answer.stresslet;
-        let rows = [
-            ("velocity", &answer.velocity),
-            ("angular velocity", &answer.angular_velocity),
-            ("force", &answer.force),
-            ("torque", &answer.torque),
-            ("stresslet x", along_x),
-            ("stresslet y", along_y),
-            ("stresslet z", along_z),
-        ];
-        for (row, (quantity, vector)) in rows.into_iter().enumerate() {
+        let rows = rows_of(case, body, answer, &scales);
+        for (row, (quantity, numbers)) in rows.into_iter().enumerate() {
             let (number, shape) = match row {
                 0 => ((i + 1).to_string(), body.shape.as_str()),
                 _ => (String::new(), ""),
             };
-            writeln!(
-                out,
-                "{number:>6}  {shape:width$}  {quantity:16}  {}",
-                numbers(vector)
-            )?;
-        }
-        if let Some(power) = answer.power {
-            let number = number(power);
-            writeln!(out, "{:>6}  {:width$}  {:16}  {number}", "", "", "power")?;
+            writeln!(out, "{number:>6}  {shape:width$}  {quantity:16}  {numbers}")?;
         }
         let mut errors = format!("stresslet {:.1e}", answer.stresslet_error_estimate);
         if let Some(error) = answer.power_error_estimate {
@@ -137,6 +123,46 @@ fn write_bodies(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
         )?;
     }
     Ok(())
+}
+
+/// The numbers of one body, line by line.
+fn rows_of(
+    case: &Case,
+    body: &Body,
+    answer: &BodyReport,
+    scales: &Scales<'_>,
+) -> Vec<(&'static str, String)> {
+    // A known flow takes the place of what is imposed: the bodies are still.
+    let known_flow = case.test.is_some();
+    let imposed =
+        (body.components).map(|component| matches!(component, Component::Imposed(_)) || known_flow);
+    let loads = imposed.map(|imposed| !imposed);
+    let mut rows = vec![
+        (
+            "velocity",
+            (scales.velocity()).row(&answer.velocity, &imposed[..3]),
+        ),
+        (
+            "angular velocity",
+            (scales.angular_velocity(answer)).row(&answer.angular_velocity, &imposed[3..]),
+        ),
+        (
+            "force",
+            scales.force(answer).row(&answer.force, &loads[..3]),
+        ),
+        (
+            "torque",
+            scales.torque(answer).row(&answer.torque, &loads[3..]),
+        ),
+    ];
+    let stresslet = (scales.stresslet(answer)).cells(answer.stresslet.as_flattened(), &[]);
+    let names = ["stresslet x", "stresslet y", "stresslet z"];
+    let tensor = names.into_iter().zip(stresslet.chunks(3));
+    rows.extend(tensor.map(|(name, cells)| (name, cells.join("  "))));
+    if let Some(power) = answer.power {
+        rows.push(("power", scales.power(answer).number(power)));
+    }
+    rows
 }
 
 /// The slowest, the fastest and the mean, and so on.
@@ -152,16 +178,21 @@ fn write_summary(out: &mut String, report: &Report) -> fmt::Result {
         "{:16}  {:>20}  {:>6}  {:>20}  {:>6}  {:>20}",
         "quantity", "smallest", "body", "largest", "body", "mean"
     )?;
-    let norm = |v: &[f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
-    type Magnitude<'m> = &'m dyn Fn(&BodyReport) -> f64;
+    let scales = Scales::new(report);
+    type Magnitude<'m> = &'m dyn Fn(&BodyReport) -> (f64, Known);
     let rows: [(&str, Magnitude<'_>); 4] = [
-        ("velocity", &|body| norm(&body.velocity)),
-        ("angular velocity", &|body| norm(&body.angular_velocity)),
-        ("force", &|body| norm(&body.force)),
-        ("torque", &|body| norm(&body.torque)),
+        ("velocity", &|body| {
+            (norm(&body.velocity), scales.velocity())
+        }),
+        ("angular velocity", &|body| {
+            let known = scales.angular_velocity(body);
+            (norm(&body.angular_velocity), known)
+        }),
+        ("force", &|body| (norm(&body.force), scales.force(body))),
+        ("torque", &|body| (norm(&body.torque), scales.torque(body))),
     ];
     for (quantity, magnitude) in rows {
-        let values: Vec<f64> = bodies.iter().map(magnitude).collect();
+        let (values, known): (Vec<f64>, Vec<Known>) = bodies.iter().map(magnitude).unzip();
         let order = |&i: &usize, &j: &usize| values[i].total_cmp(&values[j]).then(j.cmp(&i));
         let [least, most] = [
             (0..values.len()).min_by(order),
@@ -172,43 +203,70 @@ fn write_summary(out: &mut String, report: &Report) -> fmt::Result {
         writeln!(
             out,
             "{quantity:16}  {}  {:>6}  {}  {:>6}  {}",
-            number(values[least]),
+            known[least].number(values[least]),
             least + 1,
-            number(values[most]),
+            known[most].number(values[most]),
             most + 1,
-            number(mean)
+            known[most].number(mean)
         )?;
     }
     let mean = |vector: &dyn Fn(&BodyReport) -> [f64; 3]| {
         let part = |j: usize| bodies.iter().map(|body| vector(body)[j]).sum::<f64>();
         [0, 1, 2].map(|j| part(j) / bodies.len() as f64)
     };
-    let [velocity, force] = [mean(&|body| body.velocity), mean(&|body| body.force)];
-    writeln!(out, "mean velocity     {}", numbers(&velocity))?;
-    writeln!(out, "mean force        {}", numbers(&force))
+    let Some(first) = bodies.first() else {
+        return Ok(());
+    };
+    let velocity = scales.velocity().row(&mean(&|body| body.velocity), &[]);
+    let force = scales.force(first).row(&mean(&|body| body.force), &[]);
+    writeln!(out, "mean velocity     {velocity}")?;
+    writeln!(out, "mean force        {force}")
 }
 
-fn write_probes(out: &mut String, probes: &[ProbeReport], pressure_error: f64) -> fmt::Result {
+fn write_probes(out: &mut String, report: &Report) -> fmt::Result {
     writeln!(
         out,
-        "\nprobes; total velocity, pressure vanishing at infinity (estimated error of the pressures: {pressure_error:.1e})"
+        "\nprobes; total velocity, pressure vanishing at infinity (estimated error of the pressures: {:.1e})",
+        report.pressure_error_estimate
     )?;
     writeln!(
         out,
         "{:>6}  {:>10}  {:>10}  {:>10}  {:>20}  {:>20}  {:>20}  {:>20}",
         "probe", "x", "y", "z", "velocity x", "velocity y", "velocity z", "pressure"
     )?;
-    for (i, probe) in probes.iter().enumerate() {
-        let [x, y, z] = probe.point.map(|c| format!("{c:.4e}"));
+    let scales = Scales::new(report);
+    let (flow, pressure) = (scales.flow(), scales.pressure());
+    for (i, probe) in report.probes.iter().enumerate() {
+        let [x, y, z] = probe.point.map(coordinate);
         writeln!(
             out,
             "{:>6}  {x:>10}  {y:>10}  {z:>10}  {}  {}",
             i + 1,
-            numbers(&probe.velocity),
-            number(probe.pressure)
+            flow.row(&probe.velocity, &[]),
+            pressure.number(probe.pressure)
         )?;
     }
     Ok(())
+}
+
+/// A coordinate in its column.
+fn coordinate(x: f64) -> String {
+    let exact = exact(x);
+    if exact.len() <= 10 {
+        exact
+    } else {
+        format!("{x:.3e}")
+    }
+}
+
+/// All digits of a number, with an exponent if that is shorter.
+pub fn exact(x: f64) -> String {
+    let [plain, with_exponent] = [x.to_string(), format!("{x:e}")];
+    if plain.len() <= with_exponent.len() {
+        plain
+    } else {
+        with_exponent
+    }
 }
 
 fn write_discretization(out: &mut String, shapes: &[Discretization]) -> fmt::Result {
@@ -241,21 +299,6 @@ fn write_discretization(out: &mut String, shapes: &[Discretization]) -> fmt::Res
     Ok(())
 }
 
-pub(super) fn numbers<const N: usize>(vector: &[f64; N]) -> String {
-    vector.map(number).join("  ")
-}
-
-/// Thirteen digits with a signed exponent of at least two, right-aligned.
-pub(super) fn number(x: f64) -> String {
-    // Zero has no sign here.
-    let text = format!("{:.12e}", x + 0.0);
-    let text = match text.split_once('e').map(|(m, e)| (m, e.parse::<i32>())) {
-        Some((mantissa, Ok(exponent))) => format!("{mantissa}e{exponent:+03}"),
-        _ => text,
-    };
-    format!("{text:>20}")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -269,7 +312,7 @@ mod tests {
                 force: [-1.5e-300, 0.0, 18.849],
                 ..BodyReport::default()
             }],
-            probes: vec![ProbeReport::default(); 2],
+            probes: vec![super::super::ProbeReport::default(); 2],
             error_estimate: 2e-7,
             ..Report::default()
         };

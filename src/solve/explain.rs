@@ -3,13 +3,13 @@
 use std::fmt::Display;
 
 use super::error::SolveError;
-use super::question::{at_shape, name};
+use super::question::{Question, at_shape, name};
 use crate::case::{Case, CaseError};
-use bodies_of_revolution::ContactError;
+use bodies_of_revolution::{ContactError, Placed, gaps};
 use stokes_suspension::{Stop, SuspensionError};
 
-/// Errors with the bodies' names and their lines.
-pub(super) fn explain(case: &Case, error: SuspensionError) -> SolveError {
+/// An error of the library about the bodies of a case, with their names and their lines.
+pub fn explain(case: &Case, error: SuspensionError) -> SolveError {
     let line = |a: usize, b: usize| case.bodies[a.max(b)].line;
     let name = |body: usize| name(case, body);
     let at_shape = |body: usize, error: &dyn Display| at_shape(case, &case.bodies[body], error);
@@ -83,10 +83,31 @@ pub(super) fn explain(case: &Case, error: SuspensionError) -> SolveError {
             stop: Stop::MaxIterations,
             ..
         } => SolveError::Failed(format!(
-            "{}: {error} by solver.max_iterations",
-            case.path.display()
+            "{}: {error} by solver.max_iterations{}",
+            case.path.display(),
+            narrowest_gap(case).unwrap_or_default()
         )),
         SuspensionError::Interrupted => SolveError::Interrupted,
         other => SolveError::Failed(format!("{}: {other}", case.path.display())),
     }
+}
+
+/// Gaps below this part of the size of a body are hard on the iteration.
+const NARROW: f64 = 1e-3;
+
+/// The narrowest of the gaps that are so narrow that more iterations hardly help.
+fn narrowest_gap(case: &Case) -> Option<String> {
+    let question = Question::new(case).ok()?;
+    let placed = question.suspension.bodies.iter().map(|body| Placed {
+        curve: &*body.shape,
+        frame: body.frame,
+        reach: NARROW * body.shape.extent() * body.frame.scale(),
+    });
+    let found = gaps(&placed.collect::<Vec<_>>()).ok()?;
+    let gap = (found.into_iter()).min_by(|a, b| a.distance.total_cmp(&b.distance))?;
+    let [first, second] = gap.bodies.map(|body| name(case, body));
+    Some(format!(
+        "; the gap of {:.1e} between {first} and {second} may be too narrow for any number",
+        gap.distance
+    ))
 }

@@ -12,6 +12,7 @@ use crate::case::{Case, CaseError, PlaneFrame};
 use crate::output::Report;
 use crate::plane::{Plane, PlaneOptions, PlaneOrientation};
 pub use error::SolveError;
+pub use explain::explain;
 use question::Question;
 use stokes_body::progress::Progress;
 use stokes_suspension::{Answer, Options, SolveError as Unsolved, Solver, Suspension};

@@ -1,11 +1,14 @@
 //! The report of a case from its answer.
 
+use std::collections::BTreeMap;
+
 use nalgebra::{Point3, Vector3};
 
 use super::question::{Question, known_velocity};
-use crate::case::{Case, Component};
+use crate::case::{Case, Component, ShapeSpec};
 use crate::output::{
-    BodyReport, Discretization, KnownFlowReport, ProbeReport, Report, Stop, Timings,
+    BodyReport, Discretization, Imposed, Input, KnownFlowReport, Place, ProbeReport, Report, Stop,
+    Timings,
 };
 use stokes_body::progress::Progress;
 use stokes_body::resolution::Resolution;
@@ -21,10 +24,14 @@ pub(super) fn report(
     let probes = probes(case, answer);
     let t = statistics.timings;
     Ok(Report {
-        bodies: bodies(case, answer, progress)?,
+        input: Input::of(case),
+        background: (case.background.as_ref()).map(|background| background.value.clone()),
+        shapes: shapes(case),
+        bodies: bodies(case, question, answer, progress)?,
         test: known_flow(case, &probes, answer.largest_speed),
         probes,
         error_estimate: answer.error_estimate,
+        largest_speed: answer.largest_speed,
         pressure_error_estimate: answer.pressure_error(&question.suspension.probes),
         iterations: statistics.iterations,
         products: statistics.products,
@@ -48,8 +55,15 @@ pub(super) fn report(
     })
 }
 
+fn shapes(case: &Case) -> BTreeMap<String, ShapeSpec> {
+    let shapes = case.shapes.iter();
+    let named = shapes.map(|(name, shape)| (name.clone(), shape.value.clone()));
+    named.collect()
+}
+
 fn bodies(
     case: &Case,
+    question: &Question,
     answer: &Answer,
     progress: &dyn Progress,
 ) -> Result<Vec<BodyReport>, SuspensionError> {
@@ -66,14 +80,17 @@ fn bodies(
         }
     };
     let reports = answer.bodies.iter().enumerate().map(|(i, found)| {
+        let body = &case.bodies[i];
         let velocities = [found.motion.velocity, found.motion.angular_velocity].map(Into::into);
         let forces = [found.wrench.force, found.wrench.torque].map(Into::into);
         // What is given comes back as it was.
         let ([velocity, angular_velocity], [force, torque]) = match case.test {
             Some(_) => ([[0.0; 3]; 2], forces),
-            None => given_back(&case.bodies[i].components, velocities, forces),
+            None => given_back(&body.components, velocities, forces),
         };
         Ok(BodyReport {
+            place: Place::of(body, &question.suspension.bodies[i]),
+            imposed: case.test.is_none().then(|| Imposed::on(body)),
             velocity,
             angular_velocity,
             force,

@@ -22,8 +22,10 @@ pub struct BodyAnswer {
     pub motion: RigidMotion,
     /// Force and torque that the body exerts on the fluid.
     pub wrench: Wrench,
-    /// The stresslet: symmetric, without trace; its sign is Batchelor's (1970), that of the first
-    /// moment of the traction on the body, see [`stokes_body::stresslet`].
+    /// The stresslet, for the viscosity $\mu$ of the question: the symmetric traceless part of
+    /// $\int x f - \mu (u n + n u)\\, d\Gamma$ with the traction $f$ by the fluid on the body, the
+    /// velocity $u$ of its surface and the normal $n$ into the fluid (Batchelor 1970). A rigid
+    /// sphere of radius $a$ held in the rate of strain $E$ has $\frac{20}{3}\pi\mu a^3 E$.
     pub stresslet: Matrix3<f64>,
     /// By how much the velocity is off on its surface, at most; not known of a body alone, whose
     /// whole solution is compared with a finer one.
@@ -89,11 +91,12 @@ pub struct Statistics {
     pub unknowns: usize,
     /// Points of all surfaces.
     pub points: usize,
-    /// Points that are near another body.
+    /// Points so near another body that its sum over points is not accurate there.
     pub near_points: usize,
-    /// Bytes that are kept for them.
+    /// Bytes of memory that were kept to put those points right.
     pub near_bytes: usize,
-    /// Shapes and resolutions that the last solution needed the factors of.
+    /// How many different matrices were factored for the last solution: one for each shape,
+    /// resolution, and kind of motion (held or free).
     pub classes: usize,
     /// Solutions, each finer than the one before.
     pub rounds: usize,

@@ -1,4 +1,4 @@
-//! Why a suspension has no answer.
+//! Why a suspension has no answer. Messages name a body as a program does, `bodies[0]`.
 
 use bodies_of_revolution::{ContactError, CurveError};
 use inexact_krylov::Stop;
@@ -16,7 +16,7 @@ pub enum SuspensionError {
     #[error("no bodies: expected at least one")]
     Empty,
     /// A curve cannot be divided into panels.
-    #[error("body {body}: {error}")]
+    #[error("bodies[{body}]: {error}")]
     Curve {
         /// The first body of that shape.
         body: usize,
@@ -57,7 +57,7 @@ pub enum SuspensionError {
         bodies: usize,
     },
     /// A body that there is not.
-    #[error("there is no body {body}: expected one of {bodies}, counted from 0")]
+    #[error("there is no bodies[{body}]: there are {bodies}, counted from 0")]
     NoBody {
         /// What was asked for.
         body: usize,
@@ -71,7 +71,7 @@ pub enum SuspensionError {
     #[error("velocity and gradient of the undisturbed flow must be finite")]
     Background,
     /// A number of what is known of a body's motion is not finite.
-    #[error("motion, force and torque of body {body} must be finite, got {value}")]
+    #[error("motion, force and torque of bodies[{body}] must be finite, got {value}")]
     Motion {
         /// Which body.
         body: usize,
@@ -79,7 +79,7 @@ pub enum SuspensionError {
         value: f64,
     },
     /// The velocity imposed on a body is not finite.
-    #[error("the velocity imposed on body {body} is not finite everywhere")]
+    #[error("the velocity imposed on bodies[{body}] is not finite everywhere")]
     Velocity {
         /// Which body.
         body: usize,

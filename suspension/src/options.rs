@@ -73,8 +73,9 @@ pub struct Options {
     /// Levels of the preconditioner: each body by itself, and the rigid motions of all held bodies
     /// together.
     pub levels: Levels,
-    /// How inexact products may become as the residual falls, relative to their results; 0 keeps
-    /// them exact.
+    /// How inexact the products of the iteration may become as the residual falls, relative to
+    /// their results; 0 keeps all of them exact. There is seldom a reason to change it: it saves
+    /// time, and the error estimate counts what it costs.
     pub loosest_product: f64,
     /// Bytes that everything together may take; if not given, seven tenths of what the
     /// machine has (feature `machine-memory`) or of 8 GiB.

@@ -209,6 +209,7 @@ impl Rounds<'_> {
                 break;
             }
             kinds = finer;
+            (self.progress).begin_round(work.rounds + 1, Some(latest.error_estimate));
             let mut known = latest.solution.classes.all().to_vec();
             known.extend(self.classes.iter().cloned());
             // Freed first: two would take twice the memory.

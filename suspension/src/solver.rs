@@ -129,6 +129,7 @@ impl Solver {
         let begin = Instant::now();
         self.check_options()?;
         asked.check()?;
+        progress.begin_round(1, None);
         progress.begin("gaps", 0);
         let gaps = gaps_within(&asked.bodies, REACH)?;
         let mut suspension = for_viscosity_one(asked);

@@ -125,6 +125,26 @@ impl Body {
 }
 
 /// A question about any number of bodies, one included. It owns what it asks.
+///
+/// A free sphere under a force, and a rod that is held in its way; [`Solver`](super::Solver) shows
+/// how it is answered:
+///
+/// ```
+/// use bodies_of_revolution::{GeneratingCurve, Spheroid};
+/// use nalgebra::Point3;
+/// use stokes_suspension::{Body, Suspension};
+///
+/// let ball = Spheroid::sphere(0.5)?.shape();
+/// let rod = Spheroid::new(1.0, 0.5)?.shape();
+/// let suspension = Suspension::new([
+///     Body::free(&ball).at([0.0, 0.0, 2.0]).pushed([0.0, 0.0, -1.0]),
+///     Body::held(&rod).along([1.0, 0.0, 1.0]),
+/// ])
+/// .with_viscosity(2.0)
+/// .with_probes([Point3::new(2.0, 0.0, 0.0)]);
+/// assert_eq!(suspension.bodies.len(), 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Suspension {
     /// The bodies.

@@ -57,7 +57,6 @@ fn errors_fall_to_rounding_and_files_are_complete() {
         &["--tiny", "--order", "16", "--output", "a/b", "--seed", "7"],
     );
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-    assert!(output.stderr.is_empty(), "{}", text(&output.stderr));
     let stdout = text(&output.stdout);
     for part in [
         "seed 7",

@@ -1,5 +1,6 @@
 //! From a case to its answer and its files, through the command line and the library.
 
+mod cluster;
 mod converge;
 mod examples;
 mod free_bodies;
@@ -7,6 +8,7 @@ mod many_bodies;
 mod picture;
 mod readme;
 mod regressions;
+mod report;
 mod resistance;
 mod solved;
 mod vtk;

@@ -41,7 +41,7 @@ fn json_has_matrices_functions_and_centre_of_every_shape() {
         panic!("two shapes");
     };
     assert_eq!(
-        (report.viscosity, &*ball.discretization.shape),
+        (report.input.viscosity, &*ball.discretization.shape),
         (2.0, "ball")
     );
     let near = |a: f64, b: f64| (a - b).abs() < 1e-12 * b.abs();

@@ -138,7 +138,7 @@ fn forces_that_are_not_finite() {
         wrong.bodies[1].motion = Motion::Free(wrench);
         let (error, message) = of(&wrong);
         assert!(matches!(error, SuspensionError::Motion { body: 1, .. }));
-        assert!(message.starts_with("motion, force and torque of body 1 must be finite, got "));
+        assert!(message.starts_with("motion, force and torque of bodies[1] must be finite, got "));
     }
 }
 

@@ -122,12 +122,13 @@ impl Gap {
     }
 }
 
-/// What is wrong with the places of bodies; they are named by their index, from 0.
+/// What is wrong with the places of bodies; they are named by their index in the slice, `bodies[0]`
+/// first.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ContactError {
     /// A generating curve without a finite point and a direction everywhere.
-    #[error("body {body}: {source}")]
+    #[error("bodies[{body}]: {source}")]
     Curve {
         /// The first body with it.
         body: usize,
@@ -135,7 +136,7 @@ pub enum ContactError {
         source: CurveError,
     },
     /// A number out of range.
-    #[error("body {body}: {quantity} must be {expected}, got {value}")]
+    #[error("bodies[{body}]: {quantity} must be {expected}, got {value}")]
     Place {
         /// The body.
         body: usize,
@@ -147,7 +148,7 @@ pub enum ContactError {
         value: f64,
     },
     /// Bodies that touch.
-    #[error("bodies {first} and {second} touch, but must be apart")]
+    #[error("bodies[{first}] and bodies[{second}] touch, but must be apart")]
     Touch {
         /// One.
         first: usize,
@@ -155,7 +156,7 @@ pub enum ContactError {
         second: usize,
     },
     /// Bodies that overlap.
-    #[error("bodies {first} and {second} overlap by {depth:.3e}, but must be apart")]
+    #[error("bodies[{first}] and bodies[{second}] overlap by {depth:.3e}, but must be apart")]
     Overlap {
         /// One.
         first: usize,
@@ -165,7 +166,7 @@ pub enum ContactError {
         depth: Depth,
     },
     /// A body inside another.
-    #[error("body {inner} is inside body {outer}, but must be apart from it")]
+    #[error("bodies[{inner}] is inside bodies[{outer}], but must be apart from it")]
     Inside {
         /// The one inside.
         inner: usize,
@@ -173,7 +174,9 @@ pub enum ContactError {
         outer: usize,
     },
     /// Bodies that are too near each other.
-    #[error("bodies {first} and {second} are {distance:.3e} apart, but must be {needed:.3e}")]
+    #[error(
+        "bodies[{first}] and bodies[{second}] are {distance:.3e} apart, but must be {needed:.3e}"
+    )]
     Near {
         /// One.
         first: usize,

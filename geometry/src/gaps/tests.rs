@@ -122,7 +122,7 @@ fn spheres_that_touch_and_that_nearly_do() {
         let error = gap.check(0.01).unwrap_err().to_string();
         assert_eq!(
             error,
-            "bodies 0 and 1 are 1.000e-7 apart, but must be 1.000e-2"
+            "bodies[0] and bodies[1] are 1.000e-7 apart, but must be 1.000e-2"
         );
         let gap = gap_of(first, place(2.0 - 1e-9));
         assert_eq!(gap.relation, Relation::Overlapping);
@@ -487,18 +487,18 @@ fn bad_places_are_refused() {
     let told = |bad: Placed<'_>| gaps(&[good, bad]).unwrap_err().to_string();
     assert_eq!(
         told(scaled(0.0, good)),
-        "body 1: the scale must be a positive number, got 0"
+        "bodies[1]: the scale must be a positive number, got 0"
     );
     assert_eq!(
         told(Placed {
             reach: f64::NAN,
             ..good
         }),
-        "body 1: the reach must be zero or a positive length, got NaN"
+        "bodies[1]: the reach must be zero or a positive length, got NaN"
     );
     assert_eq!(
         told(at(&sphere, [0.0, f64::INFINITY, 0.0], Z)),
-        "body 1: every coordinate of the frame must be finite, got inf"
+        "bodies[1]: every coordinate of the frame must be finite, got inf"
     );
     assert_eq!(gaps(&[]), Ok(Vec::new()));
 }

@@ -319,11 +319,11 @@ fn errors_tell_depths_from_bounds() {
     let told = |other| gap_of(ball, other).check(0.0).unwrap_err().to_string();
     assert_eq!(
         told(at(&sphere, [0.0, 2.25, 0.0], Z)),
-        "bodies 0 and 1 overlap by 5.000e-1, but must be apart"
+        "bodies[0] and bodies[1] overlap by 5.000e-1, but must be apart"
     );
     assert_eq!(
         told(at(&torus, [0.0; 3], Z)),
-        "bodies 0 and 1 overlap by 2.500e-1 or more, but must be apart"
+        "bodies[0] and bodies[1] overlap by 2.500e-1 or more, but must be apart"
     );
 }
 

@@ -12,10 +12,9 @@ use f64_lanes::{Isa, Lanes, Precision, WithRoots, dispatch_roots};
 use rayon::prelude::*;
 
 use crate::FmmError;
-use crate::dispatch::{WithKernel, with_stokes};
-use crate::far::Far;
+use crate::dispatch::Kernel;
 use crate::flow::{Flow, Output, Strengths, check, check_positions};
-use crate::kernel::{Chain, Laplace, MOST, Pair, dot};
+use crate::kernel::{Chain, MOST, Pair, dot};
 
 /// The flow of `strengths` at `sources`, evaluated at `targets`, which may be the sources
 /// themselves.
@@ -63,7 +62,7 @@ pub fn sum(
         targets: scaled(targets, scale),
         precision,
     };
-    let columns = with_stokes(singularities, output, problem);
+    let columns = problem.sum(Kernel::stokes(singularities, output));
     Ok(Flow::assemble(
         output,
         targets.len(),
@@ -93,11 +92,7 @@ pub fn laplace(
         targets: scaled(targets, scale),
         precision: precision(tolerance)?,
     };
-    let columns = if gradient {
-        problem.sum::<Laplace<4>>()
-    } else {
-        problem.sum::<Laplace<1>>()
-    };
+    let columns = problem.sum(Kernel::laplace(gradient));
     let potential = (0..targets.len()).map(|i| columns.at(i, 0) * scale);
     let slopes = (0..if gradient { targets.len() } else { 0 })
         .map(|i| [1, 2, 3].map(|k| columns.at(i, k) * scale * scale));
@@ -162,14 +157,6 @@ pub(crate) struct Problem {
     pub precision: Precision,
 }
 
-impl WithKernel for Problem {
-    type Output = Columns;
-
-    fn run<K: Far>(self) -> Columns {
-        self.sum::<K>()
-    }
-}
-
 /// Results, chunk by chunk of targets, in each chunk output by output.
 pub(crate) struct Columns {
     outputs: usize,
@@ -184,32 +171,42 @@ impl Columns {
 }
 
 impl Problem {
-    pub fn sum<P: Pair>(mut self) -> Columns {
-        let stride = 3 + P::STRENGTHS;
+    pub fn sum(mut self, kernel: &Kernel) -> Columns {
+        let stride = 3 + kernel.strengths;
         for record in self.records.chunks_exact_mut(stride) {
-            for (strength, factor) in record[3..].iter_mut().zip(P::FACTORS) {
+            for (strength, factor) in record[3..].iter_mut().zip(kernel.factors) {
                 *strength *= factor;
             }
         }
         let chunks = self.targets.len().div_ceil(CHUNK);
-        let mut numbers = vec![0.0; chunks * P::OUTPUTS * CHUNK];
+        let mut numbers = vec![0.0; chunks * kernel.outputs * CHUNK];
         numbers
-            .par_chunks_mut(P::OUTPUTS * CHUNK)
+            .par_chunks_mut(kernel.outputs * CHUNK)
             .zip(self.targets.par_chunks(CHUNK))
             .for_each(|(numbers, targets)| {
-                let work = ChunkSum::<P> {
-                    records: &self.records,
-                    targets,
-                    numbers,
-                    pair: PhantomData,
-                };
-                dispatch_roots(self.precision, work);
+                (kernel.add_chunk)(self.precision, &self.records, targets, numbers);
             });
         Columns {
-            outputs: P::OUTPUTS,
+            outputs: kernel.outputs,
             numbers,
         }
     }
+}
+
+/// Adds what all sources do to one chunk of targets.
+pub(crate) fn add_chunk<P: Pair>(
+    precision: Precision,
+    records: &[f64],
+    targets: &[[f64; 3]],
+    numbers: &mut [f64],
+) {
+    let work = ChunkSum::<P> {
+        records,
+        targets,
+        numbers,
+        pair: PhantomData,
+    };
+    dispatch_roots(precision, work);
 }
 
 /// All sources against one chunk of targets.
@@ -234,7 +231,7 @@ impl<P: Pair> WithRoots for ChunkSum<'_, P> {
         }
         for block in self.records.chunks(BLOCK * (3 + P::STRENGTHS)) {
             // As many sums at a time as the registers bear.
-            if P::OUTPUTS > 4 {
+            if const { P::OUTPUTS > 4 } {
                 add_block::<S, P, TERMS, 1>(
                     simd,
                     block,

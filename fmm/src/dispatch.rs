@@ -1,36 +1,84 @@
-//! Code that is compiled for each kernel, and the choice of the kernel at run time.
+//! Kernels as values: their numbers, and the code that is compiled for each of them. All other code
+//! is compiled once.
 
-use crate::far::Far;
+use f64_lanes::Precision;
+
+use crate::direct::add_chunk;
+use crate::far::{Far, Fields};
 use crate::flow::{Output, Singularities};
-use crate::kernel::Stokes;
+use crate::kernel::{Laplace, MOST, Stokes};
+use crate::near_field::{List, NearField, Seen, add_tile};
+use crate::plan::lay_charges;
+use crate::symbol::Term;
 
-/// Work that is compiled for each kernel.
-pub(crate) trait WithKernel {
-    /// What it returns.
-    type Output;
+/// Charges and dipoles of a block of sources: strengths of all, number of the block's first, and
+/// the block's part of each column.
+type LayCharges = fn(&[Vec<f64>], usize, &mut [&mut [f64]]);
+/// Adds the near field of a tile of targets: see [`add_tile`].
+type AddTile = fn(&NearField, &Seen, usize, &List, &mut [f64]);
+/// Adds what all sources do to a chunk of targets: see [`add_chunk`].
+type AddChunk = fn(Precision, &[f64], &[[f64; 3]], &mut [f64]);
 
-    /// The work.
-    fn run<K: Far>(self) -> Self::Output;
+/// A kernel that is chosen at run time.
+pub(crate) struct Kernel {
+    /// Numbers per source.
+    pub strengths: usize,
+    /// Numbers per target.
+    pub outputs: usize,
+    /// First and last order of the chain that the residual needs.
+    pub orders: [usize; 2],
+    /// Factors that strengths are multiplied by before pairs are summed.
+    pub factors: [f64; MOST],
+    pub fields: Fields,
+    /// Digits of margin.
+    pub derivatives: usize,
+    /// The kernel as products among plane waves.
+    pub symbol: fn() -> Vec<Term>,
+    pub lay_charges: LayCharges,
+    pub add_tile: AddTile,
+    pub add_chunk: AddChunk,
 }
 
-/// Does `work` with the kernel of Stokes flow that is asked for.
-pub(crate) fn with_stokes<W: WithKernel>(
-    singularities: Singularities,
-    output: Output,
-    work: W,
-) -> W::Output {
-    match (singularities, output) {
-        (Singularities::Stokeslets, Output::Velocity) => work.run::<Stokes<3, 3>>(),
-        (Singularities::Stokeslets, Output::Pressure) => work.run::<Stokes<3, 4>>(),
-        (Singularities::Stokeslets, Output::Gradient) => work.run::<Stokes<3, 13>>(),
-        (Singularities::Stresslets, Output::Velocity) => work.run::<Stokes<6, 3>>(),
-        (Singularities::Stresslets, Output::Pressure) => work.run::<Stokes<6, 4>>(),
-        (Singularities::Stresslets, Output::Gradient) => work.run::<Stokes<6, 13>>(),
-        (Singularities::Both, Output::Velocity) => work.run::<Stokes<9, 3>>(),
-        (Singularities::Both, Output::Pressure) => work.run::<Stokes<9, 4>>(),
-        (Singularities::Both, Output::Gradient) => work.run::<Stokes<9, 13>>(),
-        (Singularities::All, Output::Velocity) => work.run::<Stokes<13, 3>>(),
-        (Singularities::All, Output::Pressure) => work.run::<Stokes<13, 4>>(),
-        (Singularities::All, Output::Gradient) => work.run::<Stokes<13, 13>>(),
+impl Kernel {
+    pub const fn of<K: Far>() -> Self {
+        Self {
+            strengths: K::STRENGTHS,
+            outputs: K::OUTPUTS,
+            orders: K::ORDERS,
+            factors: K::FACTORS,
+            fields: Fields::of::<K>(),
+            derivatives: K::DERIVATIVES,
+            symbol: K::symbol,
+            lay_charges: lay_charges::<K>,
+            add_tile: add_tile::<K>,
+            add_chunk: add_chunk::<K>,
+        }
+    }
+
+    /// The kernel of Stokes flow that is asked for.
+    pub fn stokes(singularities: Singularities, output: Output) -> &'static Self {
+        match (singularities, output) {
+            (Singularities::Stokeslets, Output::Velocity) => &const { Self::of::<Stokes<3, 3>>() },
+            (Singularities::Stokeslets, Output::Pressure) => &const { Self::of::<Stokes<3, 4>>() },
+            (Singularities::Stokeslets, Output::Gradient) => &const { Self::of::<Stokes<3, 13>>() },
+            (Singularities::Stresslets, Output::Velocity) => &const { Self::of::<Stokes<6, 3>>() },
+            (Singularities::Stresslets, Output::Pressure) => &const { Self::of::<Stokes<6, 4>>() },
+            (Singularities::Stresslets, Output::Gradient) => &const { Self::of::<Stokes<6, 13>>() },
+            (Singularities::Both, Output::Velocity) => &const { Self::of::<Stokes<9, 3>>() },
+            (Singularities::Both, Output::Pressure) => &const { Self::of::<Stokes<9, 4>>() },
+            (Singularities::Both, Output::Gradient) => &const { Self::of::<Stokes<9, 13>>() },
+            (Singularities::All, Output::Velocity) => &const { Self::of::<Stokes<13, 3>>() },
+            (Singularities::All, Output::Pressure) => &const { Self::of::<Stokes<13, 4>>() },
+            (Singularities::All, Output::Gradient) => &const { Self::of::<Stokes<13, 13>>() },
+        }
+    }
+
+    /// The kernel of charges, with the gradient if `gradient`.
+    pub fn laplace(gradient: bool) -> &'static Self {
+        if gradient {
+            &const { Self::of::<Laplace<4>>() }
+        } else {
+            &const { Self::of::<Laplace<1>>() }
+        }
     }
 }

@@ -38,7 +38,7 @@ pub(crate) struct Fields {
 }
 
 impl Fields {
-    pub fn of<K: Far>() -> Self {
+    pub const fn of<K: Far>() -> Self {
         Self {
             densities: K::DENSITIES,
             potentials: K::POTENTIALS,

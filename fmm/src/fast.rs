@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::dispatch::{WithKernel, with_stokes};
+use crate::dispatch::Kernel;
 use crate::error::FmmError;
-use crate::far::Far;
 use crate::flow::{Flow, Output, Singularities, Strengths, check, check_positions};
-use crate::kernel::{Laplace, MOST};
+use crate::kernel::MOST;
 use crate::operators::Operators;
 use crate::plan::{Planned, Scaled, plan};
 
@@ -73,28 +72,6 @@ impl<'a> Points<'a> {
     }
 }
 
-/// Makes the operators of a kernel.
-struct MakeOperators(f64);
-
-impl WithKernel for MakeOperators {
-    type Output = Result<Operators, FmmError>;
-
-    fn run<K: Far>(self) -> Self::Output {
-        Operators::new::<K>(self.0)
-    }
-}
-
-/// Plans the sums of a kernel.
-struct MakePlan(Scaled, Arc<Operators>);
-
-impl WithKernel for MakePlan {
-    type Output = Box<dyn Planned>;
-
-    fn run<K: Far>(self) -> Box<dyn Planned> {
-        plan::<K>(self.0, self.1)
-    }
-}
-
 /// Sums of Stokeslets, stresslets, rotlets and sources over one set of points, planned once and
 /// applied to any number of strengths.
 ///
@@ -134,11 +111,8 @@ impl StokesSum {
         output: Output,
         tolerance: f64,
     ) -> Result<Self, FmmError> {
-        let operators = Arc::new(with_stokes(
-            singularities,
-            output,
-            MakeOperators(tolerance),
-        )?);
+        let kernel = Kernel::stokes(singularities, output);
+        let operators = Arc::new(Operators::new(kernel, tolerance)?);
         Self::with_operators(points, singularities, output, tolerance, operators)
     }
 
@@ -166,11 +140,8 @@ impl StokesSum {
         operators: Arc<Operators>,
     ) -> Result<Self, FmmError> {
         let scale = points.scale()?;
-        let planned = with_stokes(
-            singularities,
-            output,
-            MakePlan(points.scaled(scale), operators.clone()),
-        );
+        let kernel = Kernel::stokes(singularities, output);
+        let planned = plan(kernel, points.scaled(scale), operators.clone());
         let sources = points.sources.len();
         Ok(Self {
             planned,
@@ -231,11 +202,7 @@ impl LaplaceSum {
     ///
     /// As for [`StokesSum::new`].
     pub fn new(points: Points<'_>, gradient: bool, tolerance: f64) -> Result<Self, FmmError> {
-        let operators = if gradient {
-            Operators::new::<Laplace<4>>(tolerance)?
-        } else {
-            Operators::new::<Laplace<1>>(tolerance)?
-        };
+        let operators = Operators::new(Kernel::laplace(gradient), tolerance)?;
         Self::with_operators(points, gradient, Arc::new(operators))
     }
 
@@ -254,11 +221,8 @@ impl LaplaceSum {
         operators: Arc<Operators>,
     ) -> Result<Self, FmmError> {
         let scale = points.scale()?;
-        let planned = if gradient {
-            plan::<Laplace<4>>(points.scaled(scale), operators.clone())
-        } else {
-            plan::<Laplace<1>>(points.scaled(scale), operators.clone())
-        };
+        let kernel = Kernel::laplace(gradient);
+        let planned = plan(kernel, points.scaled(scale), operators.clone());
         Ok(Self {
             planned,
             operators,

@@ -1,6 +1,6 @@
 //! Small dense products: the transforms and transfers of the grids are made of them.
 
-use f64_lanes::Lanes;
+use f64_lanes::{Isa, Lanes, WithIsa};
 use pulp::Simd;
 
 /// A row-major matrix inside a buffer.
@@ -21,45 +21,80 @@ pub(crate) enum Into {
 /// $C = AB$ or $C \mathrel{+}= AB$ with $A$ of `rows` x `depth` and $B$ of `depth` x `columns`;
 /// `columns` is a multiple of 8, `c_stride` the doubles from one row of $C$ to the next.
 #[inline(always)]
-pub(crate) fn gemm<S: Simd>(
+pub(crate) fn gemm<S: Isa>(
     simd: S,
-    [rows, columns, depth]: [usize; 3],
+    size: [usize; 3],
     a: Rows<'_>,
     b: Rows<'_>,
     c: &mut [f64],
     c_stride: usize,
     into: Into,
 ) {
-    // Tiles of 4 rows and 3 registers need 12 accumulators and as many loads as the ports deliver.
-    let registers = columns / Lanes::<S>::COUNT;
-    let mut register = 0;
-    while register < registers {
-        let wide = (registers - register).min(3);
-        let mut row = 0;
-        while row < rows {
-            let high = (rows - row).min(4);
-            let at = Tile {
-                row,
-                register,
-                depth,
-            };
-            match (high, wide) {
-                (4, 3) => tile::<S, 4, 3>(simd, at, a, b, c, c_stride, into),
-                (4, 2) => tile::<S, 4, 2>(simd, at, a, b, c, c_stride, into),
-                (4, _) => tile::<S, 4, 1>(simd, at, a, b, c, c_stride, into),
-                (3, 3) => tile::<S, 3, 3>(simd, at, a, b, c, c_stride, into),
-                (3, 2) => tile::<S, 3, 2>(simd, at, a, b, c, c_stride, into),
-                (3, _) => tile::<S, 3, 1>(simd, at, a, b, c, c_stride, into),
-                (2, 3) => tile::<S, 2, 3>(simd, at, a, b, c, c_stride, into),
-                (2, 2) => tile::<S, 2, 2>(simd, at, a, b, c, c_stride, into),
-                (2, _) => tile::<S, 2, 1>(simd, at, a, b, c, c_stride, into),
-                (_, 3) => tile::<S, 1, 3>(simd, at, a, b, c, c_stride, into),
-                (_, 2) => tile::<S, 1, 2>(simd, at, a, b, c, c_stride, into),
-                _ => tile::<S, 1, 1>(simd, at, a, b, c, c_stride, into),
+    simd.call(Product {
+        size,
+        a,
+        b,
+        c,
+        c_stride,
+        into,
+    });
+}
+
+/// A product, tile by tile. The code of all tiles is long, and is compiled once for each
+/// instruction set.
+struct Product<'a> {
+    size: [usize; 3],
+    a: Rows<'a>,
+    b: Rows<'a>,
+    c: &'a mut [f64],
+    c_stride: usize,
+    into: Into,
+}
+
+impl WithIsa for Product<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_isa<S: Isa>(self, simd: S) {
+        let Self {
+            size: [rows, columns, depth],
+            a,
+            b,
+            c,
+            c_stride,
+            into,
+        } = self;
+        // Tiles of 4 rows and 3 registers need 12 accumulators and as many loads as the ports deliver.
+        let registers = columns / Lanes::<S>::COUNT;
+        let mut register = 0;
+        while register < registers {
+            let wide = (registers - register).min(3);
+            let mut row = 0;
+            while row < rows {
+                let high = (rows - row).min(4);
+                let at = Tile {
+                    row,
+                    register,
+                    depth,
+                };
+                match (high, wide) {
+                    (4, 3) => tile::<S, 4, 3>(simd, at, a, b, c, c_stride, into),
+                    (4, 2) => tile::<S, 4, 2>(simd, at, a, b, c, c_stride, into),
+                    (4, _) => tile::<S, 4, 1>(simd, at, a, b, c, c_stride, into),
+                    (3, 3) => tile::<S, 3, 3>(simd, at, a, b, c, c_stride, into),
+                    (3, 2) => tile::<S, 3, 2>(simd, at, a, b, c, c_stride, into),
+                    (3, _) => tile::<S, 3, 1>(simd, at, a, b, c, c_stride, into),
+                    (2, 3) => tile::<S, 2, 3>(simd, at, a, b, c, c_stride, into),
+                    (2, 2) => tile::<S, 2, 2>(simd, at, a, b, c, c_stride, into),
+                    (2, _) => tile::<S, 2, 1>(simd, at, a, b, c, c_stride, into),
+                    (_, 3) => tile::<S, 1, 3>(simd, at, a, b, c, c_stride, into),
+                    (_, 2) => tile::<S, 1, 2>(simd, at, a, b, c, c_stride, into),
+                    _ => tile::<S, 1, 1>(simd, at, a, b, c, c_stride, into),
+                }
+                row += high;
             }
-            row += high;
+            register += wide;
         }
-        register += wide;
     }
 }
 
@@ -109,11 +144,11 @@ fn tile<S: Simd, const HIGH: usize, const WIDE: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use f64_lanes::{Isa, WithIsa, dispatch};
+    use f64_lanes::dispatch;
 
-    struct Product<'a>([usize; 3], &'a [f64], &'a [f64], &'a mut [f64], Into);
+    struct Whole<'a>([usize; 3], &'a [f64], &'a [f64], &'a mut [f64], Into);
 
-    impl WithIsa for Product<'_> {
+    impl WithIsa for Whole<'_> {
         type Output = ();
 
         #[inline(always)]
@@ -143,7 +178,7 @@ mod tests {
                     let start: Vec<f64> = (0..rows * columns).map(|_| fastrand::f64()).collect();
                     for into in [Into::Replace, Into::Add] {
                         let mut c = start.clone();
-                        dispatch(Product([rows, columns, depth], &a, &b, &mut c, into));
+                        dispatch(Whole([rows, columns, depth], &a, &b, &mut c, into));
                         for i in 0..rows {
                             for j in 0..columns {
                                 let at = i * columns + j;

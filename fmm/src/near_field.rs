@@ -13,9 +13,10 @@
 use std::marker::PhantomData;
 use std::ops::Range;
 
-use f64_lanes::{Isa, Lanes, PADDING, Precision, WithRoots, dispatch_roots};
+use f64_lanes::{Isa, Lanes, PADDING, Precision, WithIsa, WithRoots, dispatch, dispatch_roots};
 use rayon::prelude::*;
 
+use crate::dispatch::Kernel;
 use crate::kernel::{Chain, MOST, Pair, UNITS, dot};
 use crate::tree::{SortedPoints, Tree};
 
@@ -201,30 +202,25 @@ impl NearField {
 
     /// Adds the near field of `strengths` to `outputs`. Both are in the tree's order, one array per
     /// number.
-    pub fn add<P: Pair>(&self, strengths: &[Vec<f64>], outputs: &mut [Vec<f64>]) {
-        let records = self.records::<P>(strengths);
-        let polynomials = self.polynomials(P::ORDERS);
+    pub fn add(&self, kernel: &Kernel, strengths: &[Vec<f64>], outputs: &mut [Vec<f64>]) {
+        let seen = Seen {
+            records: self.records(kernel, strengths),
+            polynomials: self.polynomials(kernel.orders),
+        };
         let tiles = self.targets().count();
-        let mut sums = vec![0.0; tiles * P::OUTPUTS * TILE];
-        sums.par_chunks_mut(P::OUTPUTS * TILE)
+        let mut sums = vec![0.0; tiles * kernel.outputs * TILE];
+        sums.par_chunks_mut(kernel.outputs * TILE)
             .enumerate()
             .for_each_init(List::default, |list, (tile, sums)| {
-                let work = TileSum::<P> {
-                    field: self,
-                    records: &records,
-                    polynomials: &polynomials,
-                    tile,
-                    list,
-                    sums,
-                    pair: PhantomData,
-                };
-                dispatch_roots(self.precision, work);
+                let field = self;
+                dispatch(Listing { field, tile, list });
+                (kernel.add_tile)(self, &seen, tile, list, sums);
             });
         let points = &self.targets().points;
         outputs.par_iter_mut().enumerate().for_each(|(k, output)| {
             for (points, sums) in points
                 .chunks_exact(TILE)
-                .zip(sums.chunks_exact(P::OUTPUTS * TILE))
+                .zip(sums.chunks_exact(kernel.outputs * TILE))
             {
                 for (&point, sum) in points.iter().zip(&sums[k * TILE..]) {
                     if point != VACANT {
@@ -237,8 +233,8 @@ impl NearField {
 
     /// Position and weighted strengths of each place, place after place, and after the last one a
     /// source of strength zero.
-    fn records<P: Pair>(&self, strengths: &[Vec<f64>]) -> Vec<f64> {
-        let stride = 3 + P::STRENGTHS;
+    fn records(&self, kernel: &Kernel, strengths: &[Vec<f64>]) -> Vec<f64> {
+        let stride = 3 + kernel.strengths;
         let places = self.sources.points.len();
         let mut records = vec![0.0; stride * (places + 1)];
         records
@@ -253,8 +249,8 @@ impl NearField {
                 } else if self.sources.points[place] != VACANT {
                     let point = self.sources.points[place] as usize;
                     (0..3).for_each(|axis| record[axis] = self.sources.positions[axis][place]);
-                    for k in 0..P::STRENGTHS {
-                        record[3 + k] = strengths[k][point] * P::FACTORS[k];
+                    for k in 0..kernel.strengths {
+                        record[3 + k] = strengths[k][point] * kernel.factors[k];
                     }
                 }
             });
@@ -356,19 +352,61 @@ fn unpack(bits: usize, first: usize, list: &mut [u32]) -> usize {
 
 /// Sources within reach of a tile of targets.
 #[derive(Default)]
-struct List {
+pub(crate) struct List {
     places: Vec<u32>,
     /// Reaches, and where in the list the sources of each end.
     ends: Vec<(usize, usize)>,
 }
 
+/// Finds what one tile of targets sees.
+struct Listing<'a> {
+    field: &'a NearField,
+    tile: usize,
+    list: &'a mut List,
+}
+
+impl WithIsa for Listing<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_isa<S: Isa>(self, simd: S) {
+        self.field.list(simd, self.tile, self.list);
+    }
+}
+
+/// What tiles see, for one kernel.
+pub(crate) struct Seen {
+    /// Positions and strengths of the sources.
+    records: Vec<f64>,
+    /// Coefficients of the residual of each reach.
+    polynomials: Vec<Vec<f64>>,
+}
+
+/// Adds the sources of a list to the sums of a tile of targets.
+pub(crate) fn add_tile<P: Pair>(
+    field: &NearField,
+    seen: &Seen,
+    tile: usize,
+    list: &List,
+    sums: &mut [f64],
+) {
+    let work = TileSum::<P> {
+        field,
+        seen,
+        tile,
+        list,
+        sums,
+        pair: PhantomData,
+    };
+    dispatch_roots(field.precision, work);
+}
+
 /// All that one tile of targets sees.
 struct TileSum<'a, P> {
     field: &'a NearField,
-    records: &'a [f64],
-    polynomials: &'a [Vec<f64>],
+    seen: &'a Seen,
     tile: usize,
-    list: &'a mut List,
+    list: &'a List,
     sums: &'a mut [f64],
     pair: PhantomData<P>,
 }
@@ -379,7 +417,6 @@ impl<P: Pair> WithRoots for TileSum<'_, P> {
 
     #[inline(always)]
     fn with_roots<S: Isa, const TERMS: usize>(mut self, simd: S) {
-        self.field.list(simd, self.tile, self.list);
         let mut start = 0;
         for run in 0..self.list.ends.len() {
             let (reach, end) = self.list.ends[run];
@@ -456,7 +493,7 @@ impl<P: Pair> TileSum<'_, P> {
         let registers = TILE / Lanes::<S>::COUNT;
         let target = self.field.target(simd, self.tile, register);
         let residual = Residual {
-            coefficients: &self.polynomials[reach],
+            coefficients: &self.seen.polynomials[reach],
             length: self.field.reaches[reach],
         };
         let mut chains = Chains {
@@ -468,14 +505,14 @@ impl<P: Pair> TileSum<'_, P> {
             for (i, places) in places.as_chunks().0.iter().enumerate() {
                 residual.chains::<S, P, TERMS>(
                     &target,
-                    self.records,
+                    &self.seen.records,
                     places,
                     TOGETHER * i,
                     &mut chains,
                 );
             }
             for (i, &place) in places.iter().enumerate() {
-                let record = record::<P>(self.records, place);
+                let record = record::<P>(&self.seen.records, place);
                 let b = &chains.b;
                 let chain = Chain::<S, false> {
                     r2: chains.r2[i],

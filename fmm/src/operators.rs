@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use crate::across::Across;
 use rayon::ThreadPoolBuilder;
 
+use crate::dispatch::Kernel;
 use crate::error::FmmError;
-use crate::far::Far;
 use crate::parameters::Parameters;
 use crate::splitting::{ROOT_PERIOD, Splitting};
 use crate::symbol::Symbol;
@@ -38,19 +38,20 @@ impl Operators {
     /// # Errors
     ///
     /// Tolerances outside of 1e-12 to 1e-1.
-    pub fn new<K: Far>(tolerance: f64) -> Result<Self, FmmError> {
+    pub fn new(kernel: &Kernel, tolerance: f64) -> Result<Self, FmmError> {
         if !(1e-12..=1e-1).contains(&tolerance) {
             return Err(FmmError::Tolerance(tolerance));
         }
         Ok(alone(|| {
-            Self::with_parameters::<K>(Parameters::for_tolerance(tolerance, K::DERIVATIVES))
+            let parameters = Parameters::for_tolerance(tolerance, kernel.derivatives);
+            Self::with_parameters(kernel, parameters)
         }))
     }
 
-    pub fn with_parameters<K: Far>(parameters: Parameters) -> Self {
+    pub fn with_parameters(kernel: &Kernel, parameters: Parameters) -> Self {
         let splitting = Splitting::new(parameters.waves);
         let window = Window::new(parameters.width, parameters.points, parameters.waves);
-        let terms = K::symbol();
+        let terms = (kernel.symbol)();
         let cutoff = 2.0 * splitting.bandwidth();
         let across = |spacing: f64, free_space: bool, biharmonic: &dyn Fn(f64) -> f64| {
             let ball = Ball::new(cutoff / spacing);
@@ -66,7 +67,7 @@ impl Operators {
         let level = across(2.0 * PI / 3.0, false, &|k| splitting.difference(k));
         let root = across(2.0 * PI / ROOT_PERIOD, true, &|k| splitting.free_space(k));
         let transfer = Transfer::new(parameters.points, window.reach(), &window.transfer());
-        let needed = K::ORDERS[0]..=K::ORDERS[1];
+        let needed = kernel.orders[0]..=kernel.orders[1];
         let mollified = [1, 2, 3, 4].map(|order| {
             if needed.contains(&order) {
                 splitting.polynomial(order, parameters.accuracy)
@@ -75,7 +76,13 @@ impl Operators {
             }
         });
         let terms = mollified.iter().map(Vec::len).max().unwrap_or(0);
-        let costs = Costs::new::<K>(&parameters, &level.transform.ball, window.reach(), terms);
+        let costs = Costs::new(
+            kernel,
+            &parameters,
+            &level.transform.ball,
+            window.reach(),
+            terms,
+        );
         Self {
             shape: GridShape {
                 points: parameters.points,
@@ -112,17 +119,23 @@ pub(crate) struct Costs {
 impl Costs {
     /// Counted operations times their cost, measured on one core with AVX-512 (see the benches).
     /// Only ratios matter.
-    fn new<K: Far>(parameters: &Parameters, ball: &Ball, reach: usize, terms: usize) -> Self {
-        let numbers = (K::STRENGTHS + K::OUTPUTS) as f64;
-        let orders = (K::ORDERS[1] + 1 - K::ORDERS[0]) as f64;
+    fn new(
+        kernel: &Kernel,
+        parameters: &Parameters,
+        ball: &Ball,
+        reach: usize,
+        terms: usize,
+    ) -> Self {
+        let numbers = (kernel.strengths + kernel.outputs) as f64;
+        let orders = (kernel.orders[1] + 1 - kernel.orders[0]) as f64;
         // About every other pair that is evaluated is within reach.
         let pair = 1.9 * (0.3 + 0.08 * numbers + 0.021 * orders * terms as f64);
         let [g, r, j] = [parameters.points, reach, ball.waves].map(|n| n as f64);
         let rows = ball.planes.iter().map(Vec::len).sum::<usize>() as f64;
         let transform = g * g * g * j + 2.0 * g * g * rows + 4.0 * g * ball.len as f64;
         let transfer = r * g * g * g + r * r * g * g + r * r * r * g;
-        let fields = (K::DENSITIES + K::POTENTIALS) as f64;
-        let translation = 13.0 * (ball.len * K::POTENTIALS) as f64;
+        let fields = (kernel.fields.densities + kernel.fields.potentials) as f64;
+        let translation = 13.0 * (ball.len * kernel.fields.potentials) as f64;
         let grid = 1e5 + fields * (transform + transfer) / 15.0 + translation;
         let direct = 0.03 + 0.07 * numbers;
         let point = 40.0 * (parameters.width as f64 / 4.0).powi(3).max(2.0);

@@ -1,12 +1,12 @@
 //! Fast sums of one kernel: a plan for the points, then any number of applications.
 
-use std::marker::PhantomData;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::prelude::*;
 
 use crate::direct::{Problem, records};
-use crate::far::{Far, Fields};
+use crate::dispatch::Kernel;
+use crate::far::Far;
 use crate::far_field::{Charges, FarField, Grids};
 use crate::kernel::MOST;
 use crate::near_field::NearField;
@@ -50,12 +50,16 @@ impl Planned for Together {
 }
 
 /// The cheaper of the fast and the direct sum over these points.
-pub(crate) fn plan<K: Far>(points: Scaled, operators: Arc<Operators>) -> Box<dyn Planned> {
+pub(crate) fn plan(
+    kernel: &'static Kernel,
+    points: Scaled,
+    operators: Arc<Operators>,
+) -> Box<dyn Planned> {
     if points.together() {
         let targets = points.targets.as_ref().unwrap_or(&points.sources).len();
         return Box::new(Together {
             targets,
-            outputs: K::OUTPUTS,
+            outputs: kernel.outputs,
         });
     }
     let costs = operators.costs;
@@ -63,51 +67,52 @@ pub(crate) fn plan<K: Far>(points: Scaled, operators: Arc<Operators>) -> Box<dyn
     let direct = points.sources.len() as f64 * targets.len() as f64 * costs.direct;
     // A tree of one box never beats the direct sum.
     if direct < costs.tree.grid {
-        return Box::new(Directly::<K> {
+        return Box::new(Directly {
+            kernel,
             points,
             operators,
-            kernel: PhantomData,
         });
     }
     let tree = Tree::new(&points.sources, points.targets.as_deref(), &costs.tree);
     if direct < tree.cost(&costs.tree) {
-        return Box::new(Directly::<K> {
+        return Box::new(Directly {
+            kernel,
             points,
             operators,
-            kernel: PhantomData,
         });
     }
-    Box::new(Plan::<K>::new(operators, tree))
+    Box::new(Plan::new(kernel, operators, tree))
 }
 
 /// Sums so small that the direct sum takes less time.
-struct Directly<K> {
+struct Directly {
+    kernel: &'static Kernel,
     points: Scaled,
     operators: Arc<Operators>,
-    kernel: PhantomData<fn() -> K>,
 }
 
-impl<K: Far> Planned for Directly<K> {
+impl Planned for Directly {
     fn apply(&self, strength: Strength<'_>) -> Vec<Vec<f64>> {
         let Scaled { sources, targets } = &self.points;
         let targets = targets.as_ref().unwrap_or(sources);
         let problem = Problem {
-            records: records(sources, 1.0, K::STRENGTHS, strength),
+            records: records(sources, 1.0, self.kernel.strengths, strength),
             targets: targets.clone(),
             precision: self.operators.parameters.precision,
         };
-        let columns = problem.sum::<K>();
+        let columns = problem.sum(self.kernel);
         let column = |output| {
             (0..targets.len())
                 .map(|target| columns.at(target, output))
                 .collect()
         };
-        (0..K::OUTPUTS).map(column).collect()
+        (0..self.kernel.outputs).map(column).collect()
     }
 }
 
-/// Fast sums of the kernel `K` over one set of points.
-pub(crate) struct Plan<K> {
+/// Fast sums of a kernel over one set of points.
+pub(crate) struct Plan {
+    kernel: &'static Kernel,
     operators: Arc<Operators>,
     tree: Tree,
     near: NearField,
@@ -115,20 +120,22 @@ pub(crate) struct Plan<K> {
     /// Grids of earlier applications, used again: getting fresh memory costs more than clearing
     /// grids.
     grids: Mutex<Vec<Grids>>,
-    kernel: PhantomData<fn() -> K>,
 }
 
-impl<K: Far> Plan<K> {
-    pub fn new(operators: Arc<Operators>, tree: Tree) -> Self {
+/// Sources whose charges one task makes.
+const BLOCK: usize = 4096;
+
+impl Plan {
+    pub fn new(kernel: &'static Kernel, operators: Arc<Operators>, tree: Tree) -> Self {
         let near = NearField::new(&tree, &operators.mollified, operators.parameters.precision);
         let far = FarField::new(&tree);
         Self {
+            kernel,
             operators,
             tree,
             near,
             far,
             grids: Mutex::default(),
-            kernel: PhantomData,
         }
     }
 
@@ -138,9 +145,9 @@ impl<K: Far> Plan<K> {
 
     /// Charges and dipoles of all sources.
     fn charges(&self, strengths: &[Vec<f64>]) -> Charges {
-        const BLOCK: usize = 4096;
         let count = self.tree.sources.order.len();
-        let columns = if K::DIPOLES { 4 } else { 1 } * K::DENSITIES;
+        let fields = self.kernel.fields;
+        let columns = if fields.dipoles { 4 } else { 1 } * fields.densities;
         let mut charges = vec![vec![0.0; count]; columns];
         let mut blocks: Vec<Vec<&mut [f64]>> = Vec::new();
         blocks.resize_with(count.div_ceil(BLOCK), Vec::new);
@@ -155,28 +162,33 @@ impl<K: Far> Plan<K> {
             .par_iter_mut()
             .enumerate()
             .for_each(|(number, block)| {
-                let mut strength = [0.0; MOST];
-                for i in 0..block[0].len() {
-                    for (value, column) in strength.iter_mut().zip(strengths) {
-                        *value = column[number * BLOCK + i];
-                    }
-                    let (charge, dipole) = K::charges(&strength);
-                    for density in 0..K::DENSITIES {
-                        block[density][i] = charge[density];
-                        for axis in 0..if K::DIPOLES { 3 } else { 0 } {
-                            block[K::DENSITIES + 3 * density + axis][i] = dipole[density][axis];
-                        }
-                    }
-                }
+                (self.kernel.lay_charges)(strengths, number * BLOCK, block);
             });
         charges
     }
 }
 
-impl<K: Far> Planned for Plan<K> {
+/// Charges and dipoles of a block of sources, the first of which has the number `first`.
+pub(crate) fn lay_charges<K: Far>(strengths: &[Vec<f64>], first: usize, block: &mut [&mut [f64]]) {
+    let mut strength = [0.0; MOST];
+    for i in 0..block[0].len() {
+        for (value, column) in strength.iter_mut().zip(strengths) {
+            *value = column[first + i];
+        }
+        let (charge, dipole) = K::charges(&strength);
+        for density in 0..K::DENSITIES {
+            block[density][i] = charge[density];
+            for axis in 0..if K::DIPOLES { 3 } else { 0 } {
+                block[K::DENSITIES + 3 * density + axis][i] = dipole[density][axis];
+            }
+        }
+    }
+}
+
+impl Planned for Plan {
     fn apply(&self, strength: Strength<'_>) -> Vec<Vec<f64>> {
         let order = &self.tree.sources.order;
-        let mut strengths = vec![vec![0.0; order.len()]; K::STRENGTHS];
+        let mut strengths = vec![vec![0.0; order.len()]; self.kernel.strengths];
         for (place, &number) in order.iter().enumerate() {
             let strength = strength(number as usize);
             for (column, value) in strengths.iter_mut().zip(strength) {
@@ -192,17 +204,17 @@ impl<K: Far> Planned for Plan<K> {
             .unwrap_or_default();
         self.far.fill(
             &self.operators,
-            Fields::of::<K>(),
+            self.kernel.fields,
             &self.tree,
             &charges,
             &mut grids,
         );
         drop(charges);
         let order = &self.targets().order;
-        let mut outputs = vec![vec![0.0; order.len()]; K::OUTPUTS];
+        let mut outputs = vec![vec![0.0; order.len()]; self.kernel.outputs];
         self.far.read(
             &self.operators,
-            Fields::of::<K>(),
+            self.kernel.fields,
             &self.tree,
             &grids,
             &mut outputs,
@@ -211,7 +223,7 @@ impl<K: Far> Planned for Plan<K> {
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .push(grids);
-        self.near.add::<K>(&strengths, &mut outputs);
+        self.near.add(self.kernel, &strengths, &mut outputs);
         drop(strengths);
         let unsorted = outputs.par_iter().map(|sorted| {
             let mut column = vec![0.0; order.len()];

@@ -1,7 +1,6 @@
 //! Grids of children on those of their parents, and back.
 
-use f64_lanes::padded;
-use pulp::Simd;
+use f64_lanes::{Isa, padded};
 
 use crate::gemm::{Into, Rows, gemm};
 
@@ -103,7 +102,7 @@ impl Transfer {
 
     /// Adds the grid of a child to that of its parent, one field.
     #[inline(always)]
-    pub fn up<S: Simd>(
+    pub fn up<S: Isa>(
         &self,
         simd: S,
         octant: u8,
@@ -179,7 +178,7 @@ impl Transfer {
 
     /// Adds the grid of a parent to that of its child, one field: the transpose of [`Self::up`].
     #[inline(always)]
-    pub fn down<S: Simd>(
+    pub fn down<S: Isa>(
         &self,
         simd: S,
         octant: u8,
@@ -255,7 +254,7 @@ impl Transfer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use f64_lanes::{Isa, WithIsa, dispatch};
+    use f64_lanes::{WithIsa, dispatch};
 
     struct Both<'a>(&'a Transfer, u8, &'a [f64], &'a [f64]);
 

@@ -11,8 +11,7 @@
 //! are eight boxes: every axis is then contracted the same way, no row needs padding, and rows stop
 //! where the ball does.
 
-use f64_lanes::Lanes;
-use pulp::Simd;
+use f64_lanes::{Isa, Lanes};
 
 use crate::gemm::{Into, Rows, gemm};
 
@@ -155,7 +154,7 @@ impl Transform {
 
     /// Waves of the grids: rows of z are `stride` doubles long.
     #[inline(always)]
-    pub fn forward<S: Simd>(
+    pub fn forward<S: Isa>(
         &self,
         simd: S,
         grids: [&[f64]; BATCH],
@@ -216,7 +215,7 @@ impl Transform {
 
     /// Contracts y at one x.
     #[inline(always)]
-    fn sheets_from_slab<S: Simd>(&self, simd: S, x: usize, scratch: &mut Scratch) {
+    fn sheets_from_slab<S: Isa>(&self, simd: S, x: usize, scratch: &mut Scratch) {
         let points = self.axis.points;
         for (z, plane) in self.ball.planes.iter().enumerate() {
             for class_z in 0..2 {
@@ -247,7 +246,7 @@ impl Transform {
 
     /// The first `waves` cosines or sines of a folded pair of columns.
     #[inline(always)]
-    fn to_waves<S: Simd>(
+    fn to_waves<S: Isa>(
         &self,
         simd: S,
         class: usize,
@@ -278,7 +277,7 @@ impl Transform {
 
     /// Potentials on the grids: the transpose of [`Self::forward`].
     #[inline(always)]
-    pub fn backward<S: Simd>(
+    pub fn backward<S: Isa>(
         &self,
         simd: S,
         waves: &[f64],
@@ -333,7 +332,7 @@ impl Transform {
 
     /// Expands y at one x.
     #[inline(always)]
-    fn slab_from_sheets<S: Simd>(&self, simd: S, x: usize, scratch: &mut Scratch) {
+    fn slab_from_sheets<S: Isa>(&self, simd: S, x: usize, scratch: &mut Scratch) {
         let points = self.axis.points;
         for (z, plane) in self.ball.planes.iter().enumerate() {
             for class_y in 0..2 {
@@ -361,7 +360,7 @@ impl Transform {
 
     /// The even or odd part of a pair of columns from its first `waves` cosines or sines.
     #[inline(always)]
-    fn to_folded<S: Simd>(
+    fn to_folded<S: Isa>(
         &self,
         simd: S,
         class: usize,
@@ -390,7 +389,7 @@ impl Transform {
 /// Even and odd part, about the middle, of a pair of columns: the upper point plus and minus its
 /// mirror image.
 #[inline(always)]
-fn fold<S: Simd>(simd: S, columns: &[f64], folded: &mut [Vec<f64>; 2]) {
+fn fold<S: Isa>(simd: S, columns: &[f64], folded: &mut [Vec<f64>; 2]) {
     let rows = columns.chunks_exact(2 * BATCH);
     let half = rows.len() / 2;
     let (lower, upper) = columns.split_at(half * 2 * BATCH);
@@ -412,7 +411,7 @@ fn fold<S: Simd>(simd: S, columns: &[f64], folded: &mut [Vec<f64>; 2]) {
 /// The columns whose folded halves are given, after each half was multiplied by its own waves: the
 /// transpose of [`fold`].
 #[inline(always)]
-fn unfold<S: Simd>(simd: S, folded: &[Vec<f64>; 2], columns: &mut [f64]) {
+fn unfold<S: Isa>(simd: S, folded: &[Vec<f64>; 2], columns: &mut [f64]) {
     let half = columns.len() / (4 * BATCH);
     let (lower, upper) = columns.split_at_mut(half * 2 * BATCH);
     for i in 0..half {
@@ -430,7 +429,7 @@ fn unfold<S: Simd>(simd: S, folded: &[Vec<f64>; 2], columns: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use f64_lanes::{Isa, WithIsa, dispatch};
+    use f64_lanes::{WithIsa, dispatch};
 
     struct Both<'a> {
         transform: &'a Transform,

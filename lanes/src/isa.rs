@@ -29,6 +29,13 @@ pub trait Isa: Simd {
 
     /// A bit for each lane, the lowest for the first: set where $a < b$.
     fn less_bits(self, a: Lanes<Self>, b: Lanes<Self>) -> usize;
+
+    /// Does `work` in a function of its own, so that work that is wanted in several places need not
+    /// be compiled in each.
+    #[inline(always)]
+    fn call<W: WithIsa>(self, work: W) -> W::Output {
+        self.vectorize(On(work, self))
+    }
 }
 
 impl<S: Isa> Lanes<S> {
@@ -58,6 +65,11 @@ impl Isa for Scalar {
     #[inline(always)]
     fn less_bits(self, a: Lanes<Self>, b: Lanes<Self>) -> usize {
         usize::from(a.1 < b.1)
+    }
+
+    #[inline(never)]
+    fn call<W: WithIsa>(self, work: W) -> W::Output {
+        work.with_isa(self)
     }
 
     #[inline(always)]
@@ -129,10 +141,10 @@ pub trait WithIsa {
 pub fn dispatch<W: WithIsa>(work: W) -> W::Output {
     match Arch::new() {
         #[cfg(target_arch = "x86_64")]
-        Arch::V4(simd) => Simd::vectorize(simd, On(work, simd)),
+        Arch::V4(simd) => simd.call(work),
         #[cfg(target_arch = "x86_64")]
-        Arch::V3(simd) => Simd::vectorize(simd, On(work, simd)),
-        _ => Simd::vectorize(Scalar, On(work, Scalar)),
+        Arch::V3(simd) => simd.call(work),
+        _ => Scalar.call(work),
     }
 }
 

@@ -3,7 +3,7 @@ use std::f64::consts::PI;
 use f64_lanes::Precision;
 
 use super::*;
-use crate::kernel::Laplace;
+use crate::dispatch::Kernel;
 use crate::parameters::Parameters;
 use crate::splitting::Splitting;
 use crate::tree::Costs;
@@ -54,7 +54,7 @@ fn sets() -> [(Parameters, f64); 2] {
 /// in the boxes of a tree.
 fn errors(operators: &Operators, tree: &Tree) -> [f64; 4] {
     let splitting = Splitting::new(operators.parameters.waves);
-    let fields = Fields::of::<Laplace<4>>();
+    let fields = Kernel::laplace(true).fields;
     let charges = vec![(0..COUNT).map(|i| (i as f64).sin()).collect::<Vec<f64>>()];
     let (far, mut grids) = (FarField::new(tree), Grids::default());
     far.fill(operators, fields, tree, &charges, &mut grids);
@@ -91,7 +91,7 @@ fn far_field_and_residuals_are_all() {
     let mut random = fastrand::Rng::with_seed(7);
     let sources: Vec<[f64; 3]> = (0..COUNT).map(|_| [0; 3].map(|_| random.f64())).collect();
     for (parameters, bound) in sets() {
-        let operators = Operators::with_parameters::<Laplace<4>>(parameters);
+        let operators = Operators::with_parameters(Kernel::laplace(true), parameters);
         // The root alone, eight boxes, and levels of more than one slab.
         for grid in [1e9, 20_000.0, 50.0] {
             let tree = Tree::new(

@@ -1,6 +1,7 @@
 use std::f64::consts::PI;
 
 use super::*;
+use crate::far::Far;
 use crate::kernel::{Laplace, Stokes};
 use crate::tree::{Leaf, Near};
 
@@ -154,7 +155,7 @@ fn brute<P: Pair>(tree: &Tree, mollified: &[Vec<f64>; 4], strengths: &[Vec<f64>]
     outputs
 }
 
-fn compare<P: Pair>(tree: &Tree, random: &mut fastrand::Rng) {
+fn compare<P: Far>(tree: &Tree, random: &mut fastrand::Rng) {
     let mollified = polynomials(13);
     let strengths = random_columns(random, P::STRENGTHS, tree.sources.order.len());
     let expected = brute::<P>(tree, &mollified, &strengths);
@@ -162,7 +163,11 @@ fn compare<P: Pair>(tree: &Tree, random: &mut fastrand::Rng) {
         .iter()
         .map(|column| vec![0.0; column.len()])
         .collect();
-    NearField::new(tree, &mollified, Precision::Full).add::<P>(&strengths, &mut outputs);
+    NearField::new(tree, &mollified, Precision::Full).add(
+        &Kernel::of::<P>(),
+        &strengths,
+        &mut outputs,
+    );
     for (column, expected) in outputs.iter().zip(&expected) {
         let scale = expected.iter().fold(0.0f64, |scale, x| scale.max(x.abs()));
         for (x, expected) in column.iter().zip(expected) {
@@ -210,7 +215,12 @@ fn coincident_points_lose_the_mollified_part_only() {
     let mollified = polynomials(20);
     let field = NearField::new(&tree, &mollified, Precision::Full);
     let mut outputs = vec![vec![0.0; 2]; 3];
-    field.add::<Stokes<3, 3>>(&[vec![1.0, 0.0], vec![0.0; 2], vec![0.0; 2]], &mut outputs);
+    let kernel = Kernel::of::<Stokes<3, 3>>();
+    field.add(
+        &kernel,
+        &[vec![1.0, 0.0], vec![0.0; 2], vec![0.0; 2]],
+        &mut outputs,
+    );
     let expected = -2.0 * gaussian(1, 0.0);
     for own in &outputs[0] {
         assert!((own / expected - 1.0).abs() < 1e-9, "{own} {expected}");
@@ -250,7 +260,7 @@ fn busy() -> f64 {
     1e-9 * nanoseconds.expect("three numbers").expect("a number")
 }
 
-fn rate<P: Pair>(what: &str, terms: usize, occupancy: usize) {
+fn rate<P: Far>(what: &str, terms: usize, occupancy: usize) {
     let random = &mut fastrand::Rng::with_seed(1);
     let cells = if occupancy < 100 { 14 } else { 8 };
     let count = occupancy * cells * cells * cells;
@@ -268,7 +278,7 @@ fn rate<P: Pair>(what: &str, terms: usize, occupancy: usize) {
     let mut outputs = vec![vec![0.0; count]; P::OUTPUTS];
     let time = || {
         let start = busy();
-        field.add::<P>(&strengths, &mut outputs);
+        field.add(&Kernel::of::<P>(), &strengths, &mut outputs);
         busy() - start
     };
     let mut times: Vec<f64> = std::iter::repeat_with(time)

@@ -46,7 +46,8 @@ struct NearRing {
 /// Difference of radius and height, in units of the body's size, of points on one ring.
 const GRAIN: f64 = 1e-14;
 
-/// All that is near, body by body. It is a matter of places and points: all layers on them share it.
+/// All that is near, body by body. It is a matter of places and points: all layers on them share
+/// it.
 #[derive(Debug)]
 struct Places {
     visits: Vec<Vec<Visit>>,

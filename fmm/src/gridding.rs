@@ -460,7 +460,6 @@ fn interpolate_point<S: Isa, const GRADIENTS: bool, const N: usize>(
 #[cfg(test)]
 mod tests {
     use std::f64::consts::PI;
-    use std::time::Instant;
 
     use fastrand::Rng;
 
@@ -677,75 +676,5 @@ mod tests {
         spread::<1, false>(&window, CUBE, [&[]; 3], [&[]], [[&[]; 3]], &mut grid);
         interpolate::<1, false>(&window, CUBE, [&[]; 3], &grid, &mut []);
         assert!(grid.iter().all(|x| *x == 0.0));
-    }
-
-    /// Nanoseconds per point, best of several:
-    /// `cargo test --release -p stokes-fmm gridding_speed -- --ignored --nocapture`.
-    #[test]
-    #[ignore = "a measurement"]
-    fn gridding_speed() {
-        const COUNT: usize = 2000;
-        let mut rng = Rng::with_seed(4);
-        for (width, grid_points) in [(6, 16), (8, 24), (12, 36), (11, 32), (16, 48)] {
-            let window = Window::new(width, grid_points, grid_points * 2 / 3);
-            let mut points = points(&mut rng, COUNT);
-            // Sorted by cells of an eighth of the box.
-            let cell = |axis: usize, i: usize| {
-                ((points[axis][i] - CUBE.center[axis]) / CUBE.side * 8.0).floor() as i64
-            };
-            let mut order: Vec<usize> = (0..COUNT).collect();
-            order.sort_by_key(|&i| (cell(0, i), cell(1, i), cell(2, i)));
-            points = std::array::from_fn(|axis| order.iter().map(|&i| points[axis][i]).collect());
-            let densities = Densities::<3>::new(&mut rng, COUNT);
-            let dipoles = std::array::from_fn(|d| slices(&densities.dipoles[d]));
-            let charges = slices(&densities.charges);
-            let len = grid_len(grid_points, 3);
-            let mut buffer = vec![0.0; len + 8];
-            let start = buffer.as_ptr().align_offset(64);
-            let grid = &mut buffer[start..][..len];
-            let mut values = vec![0.0; COUNT * 12];
-            let mut best = [f64::INFINITY; 4];
-            for _ in 0..15 {
-                let mut time = |work: &mut dyn FnMut(), kind: usize| {
-                    let from = Instant::now();
-                    work();
-                    best[kind] = best[kind].min(from.elapsed().as_nanos() as f64 / COUNT as f64);
-                };
-                time(
-                    &mut || {
-                        spread::<3, false>(&window, CUBE, slices(&points), charges, dipoles, grid)
-                    },
-                    0,
-                );
-                time(
-                    &mut || {
-                        spread::<3, true>(&window, CUBE, slices(&points), charges, dipoles, grid)
-                    },
-                    1,
-                );
-                time(
-                    &mut || {
-                        interpolate::<3, false>(
-                            &window,
-                            CUBE,
-                            slices(&points),
-                            grid,
-                            &mut values[..3 * COUNT],
-                        )
-                    },
-                    2,
-                );
-                time(
-                    &mut || {
-                        interpolate::<3, true>(&window, CUBE, slices(&points), grid, &mut values)
-                    },
-                    3,
-                );
-            }
-            println!(
-                "w = {width}, g = {grid_points}: spread {:.0}, dipoles {:.0}, values {:.0}, gradients {:.0} ns",
-                best[0], best[1], best[2], best[3]
-            );
-        }
     }
 }

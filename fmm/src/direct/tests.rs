@@ -470,23 +470,3 @@ fn instruction_sets_agree() {
         compare(&numbers);
     }
 }
-
-/// `cargo test --release -p stokes-fmm avx2 -- --ignored --nocapture`.
-#[test]
-#[ignore = "a measurement"]
-#[cfg(target_arch = "x86_64")]
-fn rate_of_avx2() {
-    let simd = pulp::x86::V3::try_new().expect("AVX2");
-    let random = &mut fastrand::Rng::with_seed(1);
-    let records = vectors(random, 1_000_000).as_flattened().to_vec();
-    let targets = vectors(random, CHUNK);
-    let mut numbers = vec![0.0; 3 * CHUNK];
-    let mut go = || {
-        let start = std::time::Instant::now();
-        let chunk = chunk::<Stokes<3, 3>>(&records, &targets, &mut numbers);
-        pulp::Simd::vectorize(simd, On(chunk, simd));
-        500_000.0 * CHUNK as f64 / start.elapsed().as_secs_f64()
-    };
-    let best = (0..20).map(|_| go()).fold(0.0, f64::max);
-    println!("AVX2: {best:.3e} pairs/s");
-}

@@ -1,5 +1,4 @@
 use std::ops::Range;
-use std::time::Instant;
 
 use proptest::prelude::*;
 
@@ -339,81 +338,4 @@ fn distant_clusters_are_reached_and_coincident_points_are_not_split() {
         1
     );
     assert!(Tree::new(&cloud(6, 20_000, rng), None, &COSTS).levels.len() <= 3);
-}
-
-/// Figures of trees and of uniform ones; run with `--ignored --nocapture`, in release.
-#[test]
-#[ignore = "prints figures"]
-fn figures() {
-    let rng = &mut fastrand::Rng::with_seed(3);
-    let cases: Vec<(&str, Vec<[f64; 3]>)> = vec![
-        ("cube 1e5", cloud(0, 100_000, rng)),
-        ("cube 1e6", cloud(0, 1_000_000, rng)),
-        ("spheroids 1e5", spheroids(102_000, rng)),
-        ("spheroids 1e6", spheroids(1_020_000, rng)),
-        ("sphere 1e5", cloud(1, 100_000, rng)),
-        ("line 1e5", cloud(2, 100_000, rng)),
-        ("clusters 1e5", cloud(4, 100_000, rng)),
-        ("graded 1e5", cloud(8, 100_000, rng)),
-    ];
-    for (name, points) in &cases {
-        for threads in [1, 2] {
-            let pool = rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build()
-                .unwrap();
-            let mut times: Vec<f64> = (0..5)
-                .map(|_| {
-                    let start = Instant::now();
-                    std::hint::black_box(pool.install(|| Tree::new(points, None, &COSTS)));
-                    start.elapsed().as_secs_f64()
-                })
-                .collect();
-            times.sort_by(f64::total_cmp);
-            println!("{name}: {threads} threads {:.3} s", times[2]);
-        }
-        let tree = Tree::new(points, None, &COSTS);
-        let n = points.len() as f64;
-        let describe = |name: &str, tree: &Tree| {
-            let boxes: usize = tree.levels.iter().map(|level| level.boxes.len()).sum();
-            let visited: usize = tree
-                .leaves
-                .iter()
-                .map(|leaf| {
-                    leaf.targets.len()
-                        * leaf
-                            .near
-                            .iter()
-                            .map(|near| near.sources.len())
-                            .sum::<usize>()
-                })
-                .sum();
-            println!(
-                "  {name}: levels {} boxes {boxes} leaves {} points/leaf {:.0} pairs/point {:.0} (listed {:.0}) cost {:.3} s = {:.3} pairs + {:.3} grids",
-                tree.levels.len(),
-                tree.leaves.len(),
-                n / tree.leaves.len() as f64,
-                tree.pairs() / n,
-                visited as f64 / n,
-                tree.cost(&COSTS) * 1e-9,
-                tree.pairs() * COSTS.pair * 1e-9,
-                boxes as f64 * COSTS.grid * 1e-9,
-            );
-        };
-        describe("chosen", &tree);
-        for root in Root::candidates(points, None) {
-            let side = root.side;
-            describe(
-                &format!("side {side:.3}"),
-                &Tree::inside(&root, points, None, &COSTS),
-            );
-        }
-        if !name.starts_with("clusters") {
-            let root = Root::candidates(points, None)[0];
-            for depth in 1..6 {
-                let tree = uniform(points, &root, depth);
-                describe(&format!("uniform {depth}"), &tree);
-            }
-        }
-    }
 }

@@ -97,7 +97,7 @@ fn stokes(
     errors(&every(&flow, stride), &expected)
 }
 
-/// A distribution at every tolerance, with all outputs, of Stokeslets and of all kinds in turn.
+/// A distribution at every tolerance.
 fn distribution(name: &str, cloud: &Cloud) {
     distribution_at(name, cloud, &TOLERANCES);
 }

@@ -64,7 +64,8 @@ impl WithIsa for Product<'_> {
             c_stride,
             into,
         } = self;
-        // Tiles of 4 rows and 3 registers need 12 accumulators and as many loads as the ports deliver.
+        // Tiles of 4 rows and 3 registers need 12 accumulators and as many loads as the ports
+        // deliver.
         let registers = columns / Lanes::<S>::COUNT;
         let mut register = 0;
         while register < registers {

@@ -117,8 +117,7 @@ pub(crate) struct Costs {
 }
 
 impl Costs {
-    /// Counted operations times their cost, measured on one core with AVX-512 (see the benches).
-    /// Only ratios matter.
+    /// Counted operations times their cost, measured on one core with AVX-512. Only ratios matter.
     fn new(
         kernel: &Kernel,
         parameters: &Parameters,

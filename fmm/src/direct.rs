@@ -1,20 +1,16 @@
 //! Direct sums, pair by pair: the fastest method for a few thousand points, and the reference for
 //! all other methods.
 
-#![expect(
-    clippy::needless_range_loop,
-    reason = "index loops over small fixed arrays are what stays in registers"
-)]
+pub(crate) mod chunks;
 
-use std::marker::PhantomData;
-
-use f64_lanes::{Isa, Lanes, Precision, WithRoots, dispatch_roots};
+use f64_lanes::Precision;
 use rayon::prelude::*;
 
 use crate::FmmError;
 use crate::dispatch::Kernel;
 use crate::flow::{Flow, Output, Strengths, check, check_positions};
-use crate::kernel::{Chain, MOST, Pair, dot};
+use crate::kernel::MOST;
+use chunks::CHUNK;
 
 /// The flow of `strengths` at `sources`, evaluated at `targets`, which may be the sources
 /// themselves.
@@ -144,11 +140,6 @@ pub(crate) fn records(
     records
 }
 
-/// Targets that one task takes.
-const CHUNK: usize = 192;
-/// Sources that stay in the first-level cache while the targets of a chunk pass.
-const BLOCK: usize = 256;
-
 /// Records of sources against targets.
 pub(crate) struct Problem {
     /// Position and strengths of each source.
@@ -172,130 +163,26 @@ impl Columns {
 
 impl Problem {
     pub fn sum(mut self, kernel: &Kernel) -> Columns {
-        let stride = 3 + kernel.strengths;
+        let stride = 3 + kernel.numbers.strengths;
         for record in self.records.chunks_exact_mut(stride) {
-            for (strength, factor) in record[3..].iter_mut().zip(kernel.factors) {
+            for (strength, factor) in record[3..].iter_mut().zip(kernel.numbers.factors) {
                 *strength *= factor;
             }
         }
         let chunks = self.targets.len().div_ceil(CHUNK);
-        let mut numbers = vec![0.0; chunks * kernel.outputs * CHUNK];
+        let mut numbers = vec![0.0; chunks * kernel.numbers.outputs * CHUNK];
         numbers
-            .par_chunks_mut(kernel.outputs * CHUNK)
+            .par_chunks_mut(kernel.numbers.outputs * CHUNK)
             .zip(self.targets.par_chunks(CHUNK))
             .for_each(|(numbers, targets)| {
                 (kernel.add_chunk)(self.precision, &self.records, targets, numbers);
             });
         Columns {
-            outputs: kernel.outputs,
+            outputs: kernel.numbers.outputs,
             numbers,
         }
     }
 }
-
-/// Adds what all sources do to one chunk of targets.
-pub(crate) fn add_chunk<P: Pair>(
-    precision: Precision,
-    records: &[f64],
-    targets: &[[f64; 3]],
-    numbers: &mut [f64],
-) {
-    let work = ChunkSum::<P> {
-        records,
-        targets,
-        numbers,
-        pair: PhantomData,
-    };
-    dispatch_roots(precision, work);
-}
-
-/// All sources against one chunk of targets.
-struct ChunkSum<'a, P> {
-    records: &'a [f64],
-    targets: &'a [[f64; 3]],
-    numbers: &'a mut [f64],
-    pair: PhantomData<P>,
-}
-
-impl<P: Pair> WithRoots for ChunkSum<'_, P> {
-    type Output = ();
-    const EACH_PRECISION: bool = P::EACH_PRECISION;
-
-    #[inline(always)]
-    fn with_roots<S: Isa, const TERMS: usize>(self, simd: S) {
-        let mut positions = [[0.0; CHUNK]; 3];
-        for (i, target) in self.targets.iter().enumerate() {
-            for axis in 0..3 {
-                positions[axis][i] = target[axis];
-            }
-        }
-        for block in self.records.chunks(BLOCK * (3 + P::STRENGTHS)) {
-            // As many sums at a time as the registers bear.
-            if const { P::OUTPUTS > 4 } {
-                add_block::<S, P, TERMS, 1>(
-                    simd,
-                    block,
-                    &positions,
-                    self.targets.len(),
-                    self.numbers,
-                );
-            } else {
-                add_block::<S, P, TERMS, 2>(
-                    simd,
-                    block,
-                    &positions,
-                    self.targets.len(),
-                    self.numbers,
-                );
-            }
-        }
-    }
-}
-
-/// A block of sources against all targets. Each broadcast of a source serves `REGISTERS` registers
-/// of targets.
-#[inline(always)]
-fn add_block<S: Isa, P: Pair, const TERMS: usize, const REGISTERS: usize>(
-    simd: S,
-    block: &[f64],
-    positions: &[[f64; CHUNK]; 3],
-    count: usize,
-    numbers: &mut [f64],
-) {
-    let zero = Lanes::splat(simd, 0.0);
-    let least = Lanes::splat(simd, LEAST);
-    for tile in 0..count.div_ceil(REGISTERS * Lanes::<S>::COUNT) {
-        let mut targets = [[zero; 3]; REGISTERS];
-        for register in 0..REGISTERS {
-            for axis in 0..3 {
-                let index = tile * REGISTERS + register;
-                targets[register][axis] = Lanes::load(simd, &positions[axis], index);
-            }
-        }
-        let mut sums = [[zero; MOST]; REGISTERS];
-        for record in block.chunks_exact(3 + P::STRENGTHS) {
-            for register in 0..REGISTERS {
-                let target = &targets[register];
-                let x = [
-                    target[0] - record[0],
-                    target[1] - record[1],
-                    target[2] - record[2],
-                ];
-                let chain = Chain::full::<TERMS>(dot(&x, &x), least);
-                P::add(&x, &chain, &record[3..], &mut sums[register]);
-            }
-        }
-        for register in 0..REGISTERS {
-            for output in 0..P::OUTPUTS {
-                let index = tile * REGISTERS + register + output * (CHUNK / Lanes::<S>::COUNT);
-                (Lanes::load(simd, numbers, index) + sums[register][output]).store(numbers, index);
-            }
-        }
-    }
-}
-
-/// Square of the distance, relative to the largest coordinate, up to which two points count as one.
-const LEAST: f64 = 1e-80;
 
 #[cfg(test)]
 mod tests;

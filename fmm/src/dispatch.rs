@@ -3,32 +3,22 @@
 
 use f64_lanes::Precision;
 
-use crate::direct::add_chunk;
-use crate::far::{Far, Fields};
+use crate::direct::chunks::add_chunk;
+use crate::far::{Far, Fields, lay_charges};
 use crate::flow::{Output, Singularities};
-use crate::kernel::{Laplace, MOST, Stokes};
-use crate::near_field::{List, NearField, Seen, add_tile};
-use crate::plan::lay_charges;
+use crate::kernel::{Laplace, Numbers, Stokes};
+use crate::near_field::{AddTile, add_tile};
 use crate::symbol::Term;
 
 /// Charges and dipoles of a block of sources: strengths of all, number of the block's first, and
 /// the block's part of each column.
 type LayCharges = fn(&[Vec<f64>], usize, &mut [&mut [f64]]);
-/// Adds the near field of a tile of targets: see [`add_tile`].
-type AddTile = fn(&NearField, &Seen, usize, &List, &mut [f64]);
 /// Adds what all sources do to a chunk of targets: see [`add_chunk`].
 type AddChunk = fn(Precision, &[f64], &[[f64; 3]], &mut [f64]);
 
 /// A kernel that is chosen at run time.
 pub(crate) struct Kernel {
-    /// Numbers per source.
-    pub strengths: usize,
-    /// Numbers per target.
-    pub outputs: usize,
-    /// First and last order of the chain that the residual needs.
-    pub orders: [usize; 2],
-    /// Factors that strengths are multiplied by before pairs are summed.
-    pub factors: [f64; MOST],
+    pub numbers: Numbers,
     pub fields: Fields,
     /// Digits of margin.
     pub derivatives: usize,
@@ -42,10 +32,7 @@ pub(crate) struct Kernel {
 impl Kernel {
     pub const fn of<K: Far>() -> Self {
         Self {
-            strengths: K::STRENGTHS,
-            outputs: K::OUTPUTS,
-            orders: K::ORDERS,
-            factors: K::FACTORS,
+            numbers: Numbers::of::<K>(),
             fields: Fields::of::<K>(),
             derivatives: K::DERIVATIVES,
             symbol: K::symbol,

@@ -1,6 +1,6 @@
 //! What a kernel is to the grids: charges laid on them, and potentials read off.
 
-use crate::kernel::{Laplace, Pair, Stokes};
+use crate::kernel::{Laplace, MOST, Pair, Stokes};
 use crate::symbol::{self, Term};
 
 /// Most densities and potentials of any kernel.
@@ -26,6 +26,23 @@ pub(crate) trait Far: Pair {
 
     /// Charges and dipoles of a source of this strength.
     fn charges(strength: &[f64]) -> ([f64; FIELDS], [[f64; 3]; FIELDS]);
+}
+
+/// Charges and dipoles of a block of sources, the first of which has the number `first`.
+pub(crate) fn lay_charges<K: Far>(strengths: &[Vec<f64>], first: usize, block: &mut [&mut [f64]]) {
+    let mut strength = [0.0; MOST];
+    for i in 0..block[0].len() {
+        for (value, column) in strength.iter_mut().zip(strengths) {
+            *value = column[first + i];
+        }
+        let (charge, dipole) = K::charges(&strength);
+        for density in 0..K::DENSITIES {
+            block[density][i] = charge[density];
+            for axis in 0..if K::DIPOLES { 3 } else { 0 } {
+                block[K::DENSITIES + 3 * density + axis][i] = dipole[density][axis];
+            }
+        }
+    }
 }
 
 /// The numbers of a kernel's fields, for the code that need not be compiled for each kernel.

@@ -13,7 +13,7 @@ mod vector;
 
 pub(crate) use chain::{Chain, UNITS};
 pub(crate) use laplace::Laplace;
-pub(crate) use pair::{MOST, Pair};
+pub(crate) use pair::{MOST, Numbers, Pair};
 pub(crate) use stokes::Stokes;
 pub(crate) use vector::dot;
 

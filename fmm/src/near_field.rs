@@ -16,8 +16,7 @@ use std::ops::Range;
 use f64_lanes::{Isa, Lanes, PADDING, Precision, WithIsa, WithRoots, dispatch, dispatch_roots};
 use rayon::prelude::*;
 
-use crate::dispatch::Kernel;
-use crate::kernel::{Chain, MOST, Pair, UNITS, dot};
+use crate::kernel::{Chain, MOST, Numbers, Pair, UNITS, dot};
 use crate::tree::{SortedPoints, Tree};
 
 /// Points per tile: one register of the widest instruction set.
@@ -202,25 +201,31 @@ impl NearField {
 
     /// Adds the near field of `strengths` to `outputs`. Both are in the tree's order, one array per
     /// number.
-    pub fn add(&self, kernel: &Kernel, strengths: &[Vec<f64>], outputs: &mut [Vec<f64>]) {
+    pub fn add(
+        &self,
+        numbers: &Numbers,
+        add_tile: AddTile,
+        strengths: &[Vec<f64>],
+        outputs: &mut [Vec<f64>],
+    ) {
         let seen = Seen {
-            records: self.records(kernel, strengths),
-            polynomials: self.polynomials(kernel.orders),
+            records: self.records(numbers, strengths),
+            polynomials: self.polynomials(numbers.orders),
         };
         let tiles = self.targets().count();
-        let mut sums = vec![0.0; tiles * kernel.outputs * TILE];
-        sums.par_chunks_mut(kernel.outputs * TILE)
+        let mut sums = vec![0.0; tiles * numbers.outputs * TILE];
+        sums.par_chunks_mut(numbers.outputs * TILE)
             .enumerate()
             .for_each_init(List::default, |list, (tile, sums)| {
                 let field = self;
                 dispatch(Listing { field, tile, list });
-                (kernel.add_tile)(self, &seen, tile, list, sums);
+                add_tile(self, &seen, tile, list, sums);
             });
         let points = &self.targets().points;
         outputs.par_iter_mut().enumerate().for_each(|(k, output)| {
             for (points, sums) in points
                 .chunks_exact(TILE)
-                .zip(sums.chunks_exact(kernel.outputs * TILE))
+                .zip(sums.chunks_exact(numbers.outputs * TILE))
             {
                 for (&point, sum) in points.iter().zip(&sums[k * TILE..]) {
                     if point != VACANT {
@@ -233,8 +238,8 @@ impl NearField {
 
     /// Position and weighted strengths of each place, place after place, and after the last one a
     /// source of strength zero.
-    fn records(&self, kernel: &Kernel, strengths: &[Vec<f64>]) -> Vec<f64> {
-        let stride = 3 + kernel.strengths;
+    fn records(&self, numbers: &Numbers, strengths: &[Vec<f64>]) -> Vec<f64> {
+        let stride = 3 + numbers.strengths;
         let places = self.sources.points.len();
         let mut records = vec![0.0; stride * (places + 1)];
         records
@@ -249,8 +254,8 @@ impl NearField {
                 } else if self.sources.points[place] != VACANT {
                     let point = self.sources.points[place] as usize;
                     (0..3).for_each(|axis| record[axis] = self.sources.positions[axis][place]);
-                    for k in 0..kernel.strengths {
-                        record[3 + k] = strengths[k][point] * kernel.factors[k];
+                    for k in 0..numbers.strengths {
+                        record[3 + k] = strengths[k][point] * numbers.factors[k];
                     }
                 }
             });
@@ -373,6 +378,9 @@ impl WithIsa for Listing<'_> {
         self.field.list(simd, self.tile, self.list);
     }
 }
+
+/// Adds the near field of a tile of targets, of one kernel: see [`add_tile`].
+pub(crate) type AddTile = fn(&NearField, &Seen, usize, &List, &mut [f64]);
 
 /// What tiles see, for one kernel.
 pub(crate) struct Seen {

@@ -67,7 +67,7 @@ impl Operators {
         let level = across(2.0 * PI / 3.0, false, &|k| splitting.difference(k));
         let root = across(2.0 * PI / ROOT_PERIOD, true, &|k| splitting.free_space(k));
         let transfer = Transfer::new(parameters.points, window.reach(), &window.transfer());
-        let needed = kernel.orders[0]..=kernel.orders[1];
+        let needed = kernel.numbers.orders[0]..=kernel.numbers.orders[1];
         let mollified = [1, 2, 3, 4].map(|order| {
             if needed.contains(&order) {
                 splitting.polynomial(order, parameters.accuracy)
@@ -125,8 +125,8 @@ impl Costs {
         reach: usize,
         terms: usize,
     ) -> Self {
-        let numbers = (kernel.strengths + kernel.outputs) as f64;
-        let orders = (kernel.orders[1] + 1 - kernel.orders[0]) as f64;
+        let numbers = (kernel.numbers.strengths + kernel.numbers.outputs) as f64;
+        let orders = (kernel.numbers.orders[1] + 1 - kernel.numbers.orders[0]) as f64;
         // About every other pair that is evaluated is within reach.
         let pair = 1.9 * (0.3 + 0.08 * numbers + 0.021 * orders * terms as f64);
         let [g, r, j] = [parameters.points, reach, ball.waves].map(|n| n as f64);

@@ -6,7 +6,6 @@ use rayon::prelude::*;
 
 use crate::direct::{Problem, records};
 use crate::dispatch::Kernel;
-use crate::far::Far;
 use crate::far_field::{Charges, FarField, Grids};
 use crate::kernel::MOST;
 use crate::near_field::NearField;
@@ -59,7 +58,7 @@ pub(crate) fn plan(
         let targets = points.targets.as_ref().unwrap_or(&points.sources).len();
         return Box::new(Together {
             targets,
-            outputs: kernel.outputs,
+            outputs: kernel.numbers.outputs,
         });
     }
     let costs = operators.costs;
@@ -96,7 +95,7 @@ impl Planned for Directly {
         let Scaled { sources, targets } = &self.points;
         let targets = targets.as_ref().unwrap_or(sources);
         let problem = Problem {
-            records: records(sources, 1.0, self.kernel.strengths, strength),
+            records: records(sources, 1.0, self.kernel.numbers.strengths, strength),
             targets: targets.clone(),
             precision: self.operators.parameters.precision,
         };
@@ -106,7 +105,7 @@ impl Planned for Directly {
                 .map(|target| columns.at(target, output))
                 .collect()
         };
-        (0..self.kernel.outputs).map(column).collect()
+        (0..self.kernel.numbers.outputs).map(column).collect()
     }
 }
 
@@ -168,27 +167,10 @@ impl Plan {
     }
 }
 
-/// Charges and dipoles of a block of sources, the first of which has the number `first`.
-pub(crate) fn lay_charges<K: Far>(strengths: &[Vec<f64>], first: usize, block: &mut [&mut [f64]]) {
-    let mut strength = [0.0; MOST];
-    for i in 0..block[0].len() {
-        for (value, column) in strength.iter_mut().zip(strengths) {
-            *value = column[first + i];
-        }
-        let (charge, dipole) = K::charges(&strength);
-        for density in 0..K::DENSITIES {
-            block[density][i] = charge[density];
-            for axis in 0..if K::DIPOLES { 3 } else { 0 } {
-                block[K::DENSITIES + 3 * density + axis][i] = dipole[density][axis];
-            }
-        }
-    }
-}
-
 impl Planned for Plan {
     fn apply(&self, strength: Strength<'_>) -> Vec<Vec<f64>> {
         let order = &self.tree.sources.order;
-        let mut strengths = vec![vec![0.0; order.len()]; self.kernel.strengths];
+        let mut strengths = vec![vec![0.0; order.len()]; self.kernel.numbers.strengths];
         for (place, &number) in order.iter().enumerate() {
             let strength = strength(number as usize);
             for (column, value) in strengths.iter_mut().zip(strength) {
@@ -211,7 +193,7 @@ impl Planned for Plan {
         );
         drop(charges);
         let order = &self.targets().order;
-        let mut outputs = vec![vec![0.0; order.len()]; self.kernel.outputs];
+        let mut outputs = vec![vec![0.0; order.len()]; self.kernel.numbers.outputs];
         self.far.read(
             &self.operators,
             self.kernel.fields,
@@ -223,7 +205,8 @@ impl Planned for Plan {
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .push(grids);
-        self.near.add(self.kernel, &strengths, &mut outputs);
+        let kernel = self.kernel;
+        (self.near).add(&kernel.numbers, kernel.add_tile, &strengths, &mut outputs);
         drop(strengths);
         let unsorted = outputs.par_iter().map(|sorted| {
             let mut column = vec![0.0; order.len()];

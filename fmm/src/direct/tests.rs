@@ -1,10 +1,13 @@
 use std::f64::consts::PI;
+use std::marker::PhantomData;
 
-use crate::kernel::Stokes;
+use f64_lanes::{Isa, WithRoots, dispatch_roots};
 use proptest::prelude::*;
 
+use super::chunks::ChunkSum;
 use super::*;
 use crate::flow::Stresslets;
+use crate::kernel::{Pair, Stokes};
 
 /// Points and strengths of every kind.
 #[derive(Clone)]

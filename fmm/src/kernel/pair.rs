@@ -29,3 +29,23 @@ pub(crate) trait Pair: Copy + Send + Sync + 'static {
         out: &mut [Lanes<S>; MOST],
     );
 }
+
+/// The numbers of a kernel, for the code that is not compiled for each kernel: see [`Pair`].
+#[derive(Clone, Copy)]
+pub(crate) struct Numbers {
+    pub strengths: usize,
+    pub outputs: usize,
+    pub orders: [usize; 2],
+    pub factors: [f64; MOST],
+}
+
+impl Numbers {
+    pub const fn of<P: Pair>() -> Self {
+        Self {
+            strengths: P::STRENGTHS,
+            outputs: P::OUTPUTS,
+            orders: P::ORDERS,
+            factors: P::FACTORS,
+        }
+    }
+}

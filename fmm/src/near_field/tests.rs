@@ -164,7 +164,8 @@ fn compare<P: Far>(tree: &Tree, random: &mut fastrand::Rng) {
         .map(|column| vec![0.0; column.len()])
         .collect();
     NearField::new(tree, &mollified, Precision::Full).add(
-        &Kernel::of::<P>(),
+        &Numbers::of::<P>(),
+        add_tile::<P>,
         &strengths,
         &mut outputs,
     );
@@ -215,9 +216,9 @@ fn coincident_points_lose_the_mollified_part_only() {
     let mollified = polynomials(20);
     let field = NearField::new(&tree, &mollified, Precision::Full);
     let mut outputs = vec![vec![0.0; 2]; 3];
-    let kernel = Kernel::of::<Stokes<3, 3>>();
     field.add(
-        &kernel,
+        &Numbers::of::<Stokes<3, 3>>(),
+        add_tile::<Stokes<3, 3>>,
         &[vec![1.0, 0.0], vec![0.0; 2], vec![0.0; 2]],
         &mut outputs,
     );

@@ -3,7 +3,9 @@
 use svg::node::element::Path;
 use svg::node::element::path::Data;
 
-use super::{Canvas, Quantity, arrow, contains, smooth};
+use super::canvas::{Canvas, arrow};
+use super::quantity::Quantity;
+use super::smooth;
 use crate::plane::PlaneFlow;
 use crate::plane::streamlines::{Streamline, evenly_spaced};
 
@@ -102,4 +104,15 @@ fn ink(quantity: Quantity) -> &'static str {
         Quantity::Speed | Quantity::Disturbance => "white",
         Quantity::Pressure => "#333333",
     }
+}
+
+/// Whether an odd number of closed curves goes around a point.
+pub fn contains(curves: &[Vec<[f64; 2]>], [x, y]: [f64; 2]) -> bool {
+    let crossings = curves.iter().flat_map(|curve| {
+        let next = curve.iter().cycle().skip(1);
+        curve.iter().zip(next).filter(|([ax, ay], [bx, by])| {
+            (*ay > y) != (*by > y) && ax + (bx - ax) * ((y - ay) / (by - ay)) > x
+        })
+    });
+    crossings.count() % 2 == 1
 }

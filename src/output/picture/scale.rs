@@ -3,7 +3,7 @@
 use plotters::style::RGBColor;
 use svg::node::element::{LinearGradient, Stop};
 
-use super::Quantity;
+use super::quantity::Quantity;
 use crate::output::plot::colour::{blue_red, viridis};
 
 /// The part of the pressures that the colours cover.

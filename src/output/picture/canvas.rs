@@ -1,4 +1,4 @@
-//! The sheet that a picture is drawn on: where the plane is on it, and what stands around the plane.
+//! The sheet that a picture is drawn on: where the plane is on it, and what stands around it.
 
 use plotters::style::RGBColor;
 use svg::node::element::path::Data;

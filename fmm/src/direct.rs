@@ -185,4 +185,8 @@ impl Problem {
 }
 
 #[cfg(test)]
+#[expect(
+    clippy::needless_range_loop,
+    reason = "indices of vectors and matrices are those of the formulas"
+)]
 mod tests;

@@ -321,11 +321,11 @@ impl SurfaceModes {
     /// `theta`, in the body's frame.
     pub fn at(&self, k: usize, theta: f64) -> [f64; 3] {
         let mut value = [0.0; 3];
-        let first = Complex64::cis(theta);
+        let step = Complex64::cis(theta);
         let mut turn = Complex64::from(1.0);
         for n in 0..self.modes {
             let Complex64 { re: cos, im: sin } = turn;
-            turn *= first;
+            turn *= step;
             for (j, value) in value.iter_mut().enumerate() {
                 let (first, second) = (self.component(n, 0, j)[k], self.component(n, 1, j)[k]);
                 *value += if j == 1 {

@@ -223,6 +223,7 @@ impl Checker {
                 *sum = std::mem::replace(sum, SurfaceModes::zero(0, 0)).plus(1.0, &mine);
             }
             interactions.free_buffers();
+            // Until all parts are done: the next one shares what is near.
             self.interactions[part as usize] = Some(interactions);
             progress.advance(bodies.len() / Part::ALL.len());
         }

@@ -4,7 +4,8 @@
 //! mode $n$ is of the size of $e^{-n\\,\mathrm{acosh}\\,\chi}$, and with $N$ samples it is off by
 //! $e^{-(N - n)\\,\mathrm{acosh}\\,\chi}$. Modes below rounding are left zero, so the cost does not
 //! grow with the number of modes. Four real sequences share a complex transform: two even ones and
-//! two odd ones, told apart afterwards by symmetry.
+//! two odd ones, told apart afterwards by symmetry. Each is first divided by its size, a power of
+//! two: entries have different units, and the rounding of a large one would bury a small one.
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -130,9 +131,12 @@ impl Fourier {
                 return;
             }
             let (even1, even2, odd1, odd2) = (row(f1), row(f2), row(g1), row(g2));
+            let sizes = [even1, even2, odd1, odd2].map(size);
+            let inverse = |size: f64| if size > 0.0 { 1.0 / size } else { 0.0 };
+            let [of_f1, of_f2, of_g1, of_g2] = sizes.map(inverse);
             for i in 0..=count / 2 {
-                let f = Complex64::new(even1[i], even2[i]);
-                let g = Complex64::new(odd1[i], odd2[i]);
+                let f = Complex64::new(of_f1 * even1[i], of_f2 * even2[i]);
+                let g = Complex64::new(of_g1 * odd1[i], of_g2 * odd2[i]);
                 sequence[if i == 0 { 0 } else { count - i }] = f - g;
                 sequence[i] = f + g;
             }
@@ -142,19 +146,27 @@ impl Fourier {
                 let plus = sequence[n];
                 let minus = sequence[if n == 0 { 0 } else { count - n }];
                 let (sum, difference) = (plus + minus, plus - minus);
-                for (entry, value) in [
-                    (f1, sum.re),
-                    (f2, sum.im),
-                    (g2, difference.re),
-                    (g1, -difference.im),
+                for (entry, value, size) in [
+                    (f1, sum.re, sizes[0]),
+                    (f2, sum.im, sizes[1]),
+                    (g2, difference.re, sizes[3]),
+                    (g1, -difference.im, sizes[2]),
                 ] {
                     if let Some(k) = entry {
-                        out[(n * K + k) * stride] = scale * value;
+                        out[(n * K + k) * stride] = scale * size * value;
                     }
                 }
             }
         }
     }
+}
+
+/// The power of two at or below the largest magnitude; 0 if there is none.
+fn size(samples: &[f64]) -> f64 {
+    const EXPONENT: u64 = 0x7ff << 52;
+    let largest = samples.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+    let power = f64::from_bits(largest.to_bits() & EXPONENT);
+    if power.is_normal() { power } else { 0.0 }
 }
 
 /// No prime factors but 2, 3 and 5: a length the FFT is quick at.

@@ -422,7 +422,7 @@ impl Assembly {
             }
         };
         let summed = singles.seconds_of_sums;
-        singles.add_velocities(forced, &mut velocities, self.tolerances.product)?;
+        singles.add_velocities(&[forced], &mut velocities, self.tolerances.product)?;
         seconds.sum += singles.seconds_of_sums - summed;
         if self.solved > 1 {
             singles.free_buffers();

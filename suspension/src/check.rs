@@ -58,7 +58,7 @@ pub(crate) struct Checker {
     finer: Vec<Arc<FinerSurface>>,
     finer_of: Vec<usize>,
     keep: Keep,
-    interactions: [Option<Interactions>; Part::ALL.len()],
+    interactions: Option<Interactions>,
 }
 
 /// The last mode of a class on its finer surface. With one axis for all and no slip, the modes of
@@ -106,7 +106,7 @@ impl Checker {
                 .map(|body| classes.index_of(body))
                 .collect(),
             keep,
-            interactions: Default::default(),
+            interactions: None,
         })
     }
 
@@ -200,61 +200,64 @@ impl Checker {
         operators: &Operators,
         progress: &dyn Progress,
     ) -> Result<Vec<SurfaceModes>, SuspensionError> {
-        let zero = |body: usize| SurfaceModes::zero(0, self.of(body).discretization.nodes().len());
-        let mut sum: Vec<SurfaceModes> = (0..layers.len()).map(zero).collect();
-        for part in Part::ALL {
-            let fields: Vec<Vec<f64>> = (0..layers.len())
-                .into_par_iter()
-                .map(|body| self.of(body).field(part, &layers[body]))
-                .collect();
-            let fields = fields.concat();
-            if fields.iter().all(|&x| x == 0.0) {
-                continue;
-            }
-            let mut interactions = match self.interactions[part as usize].take() {
-                Some(kept) => kept,
-                None => self.interactions(bodies, part, tolerance, operators)?,
-            };
-            let mut velocities = vec![0.0; fields.len()];
-            interactions.add_velocities(&fields, &mut velocities, tolerance)?;
-            for (body, sum) in sum.iter_mut().enumerate() {
-                let mine = &velocities[interactions.layout().of(body)];
-                let mine = SurfaceModes::from_scaled(&self.of(body).discretization, mine);
-                *sum = std::mem::replace(sum, SurfaceModes::zero(0, 0)).plus(1.0, &mine);
-            }
+        let field = |part: Part| -> Vec<f64> {
+            let of_body = |body: usize| self.of(body).field(part, &layers[body]);
+            let fields: Vec<Vec<f64>> = (0..layers.len()).into_par_iter().map(of_body).collect();
+            fields.concat()
+        };
+        let [solved, forces] = Part::ALL.map(field);
+        let mut velocities = vec![0.0; solved.len()];
+        // Bodies that are held, or that nothing pushes, have no layers of the second part.
+        let fields = match forces.iter().any(|&x| x != 0.0) {
+            true => vec![&solved[..], &forces],
+            false => vec![&solved[..]],
+        };
+        let kept = self.interactions.take();
+        let mut interactions = match kept.filter(|kept| kept.densities() == fields.len()) {
+            Some(kept) => kept,
+            None => self.interactions(bodies, fields.len(), tolerance, operators)?,
+        };
+        interactions.add_velocities(&fields, &mut velocities, tolerance)?;
+        let of_body = |body: usize| {
+            let modes = &velocities[interactions.layout().of(body)];
+            SurfaceModes::from_scaled(&self.of(body).discretization, modes)
+        };
+        let of_bodies = (0..bodies.len()).map(of_body).collect();
+        progress.advance(bodies.len());
+        if let Keep::Places { .. } = self.keep {
             interactions.free_buffers();
-            // Until all parts are done: the next one shares what is near.
-            self.interactions[part as usize] = Some(interactions);
-            progress.advance(bodies.len() / Part::ALL.len());
+            self.interactions = Some(interactions);
         }
-        if !matches!(self.keep, Keep::Places { .. }) {
-            self.interactions = Default::default();
-        }
-        Ok(sum)
+        Ok(of_bodies)
     }
 
+    /// The interactions of the first parts of the densities.
     fn interactions(
         &self,
         bodies: &[Body],
-        part: Part,
+        parts: usize,
         tolerance: f64,
         operators: &Operators,
     ) -> Result<Interactions, SuspensionError> {
-        let members = bodies.iter().enumerate().map(|(i, body)| Member {
-            tables: self.of(i).tables(part).clone(),
-            frame: body.frame,
-        });
+        let members = |part: Part| -> Vec<Member> {
+            let members = bodies.iter().enumerate().map(|(i, body)| Member {
+                tables: self.of(i).tables(part).clone(),
+                frame: body.frame,
+            });
+            members.collect()
+        };
         let uses = match self.keep {
             Keep::Nothing => Use::Once,
             Keep::Shapes => Use::Often { memory: 0 },
             Keep::Places { rows } => Use::Often {
-                memory: rows / Part::ALL.len(),
+                memory: rows / parts,
             },
         };
-        let (members, operators) = (members.collect(), operators.clone());
-        Ok(match self.interactions.iter().flatten().next() {
-            Some(of_others) => of_others.of_layers(members, uses, operators)?,
-            None => Interactions::new(members, tolerance, uses, operators, &|_| ())?,
+        let solved = members(Part::Solved);
+        let of_solved = Interactions::new(solved, tolerance, uses, operators.clone(), &|_| ())?;
+        Ok(match parts {
+            1 => of_solved,
+            _ => of_solved.with_density(members(Part::Forces), operators.clone())?,
         })
     }
 }

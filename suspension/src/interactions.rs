@@ -56,18 +56,24 @@ impl Use {
 
 /// The interactions of some bodies.
 pub(crate) struct Interactions {
-    members: Vec<Member>,
-    batches: Batches,
+    densities: Vec<Density>,
     /// Where the bodies' modes are, and their points.
     fields: Layout,
     points: Layout,
     layers: LayerPoints,
-    near: Near,
     uses: Use,
     tolerance: f64,
     sums: Sums,
     /// Wall-clock seconds of all sums so far.
     pub seconds_of_sums: f64,
+}
+
+/// One density on all bodies, and the layers that it makes there. The held have one; of the free,
+/// the single layer that carries force and torque has a density of its own.
+struct Density {
+    members: Vec<Member>,
+    batches: Batches,
+    near: Near,
     /// Room for products; none when at rest.
     own: Vec<f64>,
     strengths: Vec<near::Strengths>,
@@ -101,8 +107,31 @@ impl Interactions {
             member.frame.vector_to_lab(normal).into()
         });
         let near = Near::new(&members, tolerance, uses.memory(), done)?;
+        let density = Density::new(members, near);
         let on = [positions, normals];
-        Ok(Self::at(on, near, members, tolerance, uses, operators))
+        Ok(Self::at(on, vec![density], tolerance, uses, operators))
+    }
+
+    /// The same of two densities, the second that of `members`, on the same points and in one sum.
+    ///
+    /// # Errors
+    /// If a quadrature rule is missing.
+    pub fn with_density(
+        self,
+        members: Vec<Member>,
+        operators: Operators,
+    ) -> Result<Self, InteractionError> {
+        let near = self.near().of_layers(&members, self.uses.memory())?;
+        let mut densities = self.densities;
+        densities.push(Density::new(members, near));
+        let on = [self.layers.positions, self.layers.normals];
+        Ok(Self::at(
+            on,
+            densities,
+            self.tolerance,
+            self.uses,
+            operators,
+        ))
     }
 
     /// The interactions of other layers, those of `members`, on the same points: what is near needs
@@ -116,38 +145,36 @@ impl Interactions {
         uses: Use,
         operators: Operators,
     ) -> Result<Self, InteractionError> {
-        let near = self.near.of_layers(&members, uses.memory())?;
+        let near = self.near().of_layers(&members, uses.memory())?;
+        let density = Density::new(members, near);
         let on = [&self.layers.positions, &self.layers.normals].map(Clone::clone);
-        Ok(Self::at(on, near, members, self.tolerance, uses, operators))
+        Ok(Self::at(on, vec![density], self.tolerance, uses, operators))
     }
 
     fn at(
         [positions, normals]: [Vec<[f64; 3]>; 2],
-        near: Near,
-        members: Vec<Member>,
+        densities: Vec<Density>,
         tolerance: f64,
         uses: Use,
         operators: Operators,
     ) -> Self {
-        let single = members.iter().any(|m| m.tables.weights.single != 0.0);
-        let double = members.iter().any(|m| m.tables.weights.double != 0.0);
+        let all = || densities.iter().flat_map(|density| &density.members);
+        let single = all().any(|m| m.tables.weights.single != 0.0);
+        let double = all().any(|m| m.tables.weights.double != 0.0);
         let singularities = match (single, double) {
             (true, true) => Singularities::Both,
             (true, false) => Singularities::Stokeslets,
             _ => Singularities::Stresslets,
         };
+        let members = &densities[0].members;
         Self {
-            near,
             uses,
-            batches: Batches::new(&members),
-            own: Vec::new(),
-            strengths: Vec::new(),
             sums: Sums::new(operators, singularities, Output::Velocity, tolerance),
             seconds_of_sums: 0.0,
             tolerance,
             fields: Layout::new(members.iter().map(|m| m.tables.field_len())),
             points: Layout::new(members.iter().map(|m| m.tables.grid().len())),
-            members,
+            densities,
             layers: LayerPoints {
                 positions,
                 normals,
@@ -163,30 +190,38 @@ impl Interactions {
         &self.fields
     }
 
-    /// The bodies.
+    /// How many densities there are.
+    pub fn densities(&self) -> usize {
+        self.densities.len()
+    }
+
+    /// The bodies, with the tables of the first density.
     pub fn members(&self) -> &[Member] {
-        &self.members
+        &self.densities[0].members
     }
 
-    /// What is near.
+    /// What is near, for the first density.
     pub fn near(&self) -> &Near {
-        &self.near
+        &self.densities[0].near
     }
 
-    /// Adds to the modes in `velocities` what the `densities` of all other bodies do; both are
-    /// scaled by the roots of the weights. The error is about `tolerance` relative to all
+    /// Adds to the modes in `velocities` what the densities of all other bodies do, the modes of
+    /// each density in one of `fields`; all are scaled by the roots of the weights. The error is about `tolerance` relative to all
     /// velocities that the densities make, in the Euclidean norm.
     ///
     /// # Errors
     /// If a density is not finite.
     pub fn add_velocities(
         &mut self,
-        densities: &[f64],
+        fields: &[&[f64]],
         velocities: &mut [f64],
         tolerance: f64,
     ) -> Result<(), InteractionError> {
         self.make_room();
-        self.spread(densities);
+        for (density, field) in self.densities.iter_mut().zip(fields) {
+            density.spread(field, &self.fields);
+        }
+        self.place_singularities();
         let start = Instant::now();
         let few = sums::are_few(self.points.len(), self.points.len());
         let mut velocity = if few {
@@ -197,83 +232,85 @@ impl Interactions {
             self.sums.apply(points, &strengths, tolerance)?.velocity
         };
         self.seconds_of_sums += start.elapsed().as_secs_f64();
-        self.own.clear();
-        self.own.resize(self.fields.len(), 0.0);
-        if !few {
-            self.own.copy_from_slice(densities);
-            self.sum_own_points();
+        for (density, field) in self.densities.iter_mut().zip(fields) {
+            density.own.clear();
+            if few {
+                density.own.resize(self.fields.len(), 0.0);
+            } else {
+                density.own.extend_from_slice(field);
+                density.sum_own_points(&self.fields, self.uses);
+            }
         }
-        let members = &self.members;
-        let (fields, near) = (&self.fields, &self.near);
-        let own = &self.own;
-        let strengths = &self.strengths;
+        let (layout, densities) = (&self.fields, &self.densities);
         let points = self.points.split(&mut velocity);
         points
             .into_par_iter()
-            .zip(fields.split(velocities))
+            .zip(layout.split(velocities))
             .enumerate()
             .try_for_each_init(
                 || (Vec::new(), [(); 3].map(|()| Vec::new())),
                 |(scratch, in_body), (body, (at_points, modes))| {
-                    let field = |source: usize| &densities[fields.of(source)];
-                    near.correct(members, body, field, strengths, at_points)?;
-                    let Member { tables, frame } = &members[body];
+                    for (density, densities) in densities.iter().zip(fields) {
+                        let field = |source: usize| &densities[layout.of(source)];
+                        let Density {
+                            members,
+                            near,
+                            strengths,
+                            ..
+                        } = density;
+                        near.correct(members, body, field, strengths, at_points)?;
+                    }
+                    let Member { tables, frame } = &densities[0].members[body];
+                    let grid = tables.grid();
+                    let places = densities[0].strengths[body].points[0].len();
                     for component in in_body.iter_mut() {
                         component.clear();
-                        component.resize(strengths[body].points[0].len(), 0.0);
+                        component.resize(places, 0.0);
                     }
-                    for (place, velocity) in tables.grid().places().zip(at_points.iter()) {
+                    for (place, velocity) in grid.places().zip(at_points.iter()) {
                         let turned = frame.vector_to_body((*velocity).into());
                         for k in 0..3 {
                             in_body[k][place] = turned[k];
                         }
                     }
-                    tables.grid().add_modes(in_body, scratch, modes);
-                    for (mode, own) in modes.iter_mut().zip(&own[fields.of(body)]) {
-                        *mode -= own;
+                    grid.add_modes(in_body, scratch, modes);
+                    for density in densities {
+                        for (mode, own) in modes.iter_mut().zip(&density.own[layout.of(body)]) {
+                            *mode -= own;
+                        }
                     }
                     Ok(())
                 },
             )
     }
 
-    /// What the sum over all points did to each body's own, from the densities in `own`.
-    fn sum_own_points(&mut self) {
-        let (members, fields) = (&self.members, &self.fields);
-        if self.uses == Use::Once {
-            for (tables, batches) in self.batches.by_tables() {
-                let matrices = tables.new_point_sum();
-                batches.apply(fields, &mut self.own, |_, n, columns, scratch| {
-                    multiply(&matrices, n, columns, scratch);
-                });
-            }
-            return;
-        }
-        self.batches
-            .apply(fields, &mut self.own, |body, n, columns, scratch| {
-                multiply(members[body].tables.point_sum(), n, columns, scratch);
-            });
-    }
-
     /// Frees the buffers of products: they are made anew with the next one.
     pub fn free_buffers(&mut self) {
         self.sums.forget_plan();
-        (self.own, self.strengths) = (Vec::new(), Vec::new());
+        for density in &mut self.densities {
+            (density.own, density.strengths) = (Vec::new(), Vec::new());
+        }
         (self.layers.stokeslets, self.layers.stresslets) = (Vec::new(), Vec::new());
     }
 
     fn make_room(&mut self) {
-        if !self.strengths.is_empty() {
+        let room = |used: bool| vec![[0.0; 3]; if used { self.points.len() } else { 0 }];
+        if !self.densities[0].strengths.is_empty() {
             return;
         }
-        let room = |used: bool| vec![[0.0; 3]; if used { self.points.len() } else { 0 }];
-        let bodies = 0..self.members.len();
-        self.strengths = bodies
-            .map(|body| self.near.strengths(&self.members, body))
-            .collect();
         let stokeslets = room(self.layers.has_stokeslets());
         self.layers.stresslets = room(self.layers.has_stresslets());
         self.layers.stokeslets = stokeslets;
+        for Density {
+            members,
+            near,
+            strengths,
+            ..
+        } in &mut self.densities
+        {
+            let bodies = 0..members.len();
+            *strengths = bodies.map(|body| near.strengths(members, body)).collect();
+        }
     }
 
     /// The velocities at all points, of the points of all other bodies. Of what neighbours on a
@@ -281,7 +318,7 @@ impl Interactions {
     /// all.
     fn sum_over_others(&self) -> Result<Vec<[f64; 3]>, FmmError> {
         let mut velocity = Vec::with_capacity(self.points.len());
-        for body in 0..self.members.len() {
+        for body in 0..self.members().len() {
             let own = self.points.of(body);
             let targets = &self.layers.positions[own.clone()];
             let first = velocity.len();
@@ -301,53 +338,89 @@ impl Interactions {
         Ok(velocity)
     }
 
-    /// Puts the densities on the points: in the bodies' frames, and as singularities in the
-    /// laboratory.
-    fn spread(&mut self, densities: &[f64]) {
-        let (members, fields, near) = (&self.members, &self.fields, &self.near);
-        let count = members.len();
-        let split = |strengths| -> Vec<Option<&mut [[f64; 3]]>> {
-            let strengths: &mut Vec<[f64; 3]> = strengths;
-            if strengths.is_empty() {
-                (0..count).map(|_| None).collect()
-            } else {
-                self.points.split(strengths).into_iter().map(Some).collect()
-            }
-        };
+    /// The singularities at the points, in the laboratory, that all densities together make.
+    fn place_singularities(&mut self) {
         let layers = &mut self.layers;
-        let (stokeslets, stresslets) =
-            (split(&mut layers.stokeslets), split(&mut layers.stresslets));
-        let singularities = stokeslets.into_par_iter().zip(stresslets);
-        (self.strengths.par_iter_mut())
-            .zip(singularities)
-            .enumerate()
-            .for_each_init(
-                || (Vec::new(), Default::default()),
-                |(scratch, room), (body, (strengths, (mut stokeslets, mut stresslets)))| {
-                    let Member { tables, frame } = &members[body];
-                    let (grid, field) = (tables.grid(), &densities[fields.of(body)]);
-                    let upsampled = near.upsamplings(body).zip(&mut strengths.upsampled);
-                    for (upsampling, strengths) in upsampled {
-                        if let Some(upsampling) = upsampling {
-                            upsampling.to_points(field, room, strengths);
-                        }
-                    }
-                    let strengths = &mut strengths.points;
-                    grid.to_points(field, scratch, strengths);
+        layers.stokeslets.fill([0.0; 3]);
+        layers.stresslets.fill([0.0; 3]);
+        for density in &self.densities {
+            let split = |strengths| -> Vec<&mut [[f64; 3]]> {
+                let strengths: &mut Vec<[f64; 3]> = strengths;
+                if strengths.is_empty() {
+                    density.members.iter().map(|_| Default::default()).collect()
+                } else {
+                    self.points.split(strengths)
+                }
+            };
+            let stokeslets = split(&mut layers.stokeslets).into_par_iter();
+            (stokeslets.zip(split(&mut layers.stresslets)))
+                .zip(&density.members)
+                .zip(&density.strengths)
+                .for_each(|(((stokeslets, stresslets), member), strengths)| {
+                    let Member { tables, frame } = member;
                     let [single, double] = factors_of_layers(frame);
                     let single = tables.weights.single * single;
                     let double = tables.weights.double * double;
-                    for (point, place) in grid.places().enumerate() {
-                        let strength = strengths.each_ref().map(|s| s[place]);
-                        let in_lab = frame.vector_to_lab(strength.into());
-                        if let Some(stokeslets) = &mut stokeslets {
-                            stokeslets[point] = (single * in_lab).into();
+                    for (factor, singularities) in [(single, stokeslets), (double, stresslets)] {
+                        if factor == 0.0 {
+                            continue;
                         }
-                        if let Some(stresslets) = &mut stresslets {
-                            stresslets[point] = (double * in_lab).into();
+                        for (place, strength) in tables.grid().places().zip(singularities) {
+                            let in_body = strengths.points.each_ref().map(|s| s[place]);
+                            let in_lab = factor * frame.vector_to_lab(in_body.into());
+                            *strength = std::array::from_fn(|k| strength[k] + in_lab[k]);
                         }
                     }
-                },
-            );
+                });
+        }
+    }
+}
+
+impl Density {
+    fn new(members: Vec<Member>, near: Near) -> Self {
+        Self {
+            batches: Batches::new(&members),
+            near,
+            members,
+            own: Vec::new(),
+            strengths: Vec::new(),
+        }
+    }
+
+    /// Puts the density on the points, in the bodies' frames.
+    fn spread(&mut self, densities: &[f64], fields: &Layout) {
+        let (members, near) = (&self.members, &self.near);
+        (self.strengths.par_iter_mut().enumerate()).for_each_init(
+            || (Vec::new(), Default::default()),
+            |(scratch, room), (body, strengths)| {
+                let field = &densities[fields.of(body)];
+                let upsampled = near.upsamplings(body).zip(&mut strengths.upsampled);
+                for (upsampling, strengths) in upsampled {
+                    if let Some(upsampling) = upsampling {
+                        upsampling.to_points(field, room, strengths);
+                    }
+                }
+                let grid = members[body].tables.grid();
+                grid.to_points(field, scratch, &mut strengths.points);
+            },
+        );
+    }
+
+    /// What the sum over all points did to each body's own, from the density in `own`.
+    fn sum_own_points(&mut self, fields: &Layout, uses: Use) {
+        if uses == Use::Once {
+            for (tables, batches) in self.batches.by_tables() {
+                let matrices = tables.new_point_sum();
+                batches.apply(fields, &mut self.own, |_, n, columns, scratch| {
+                    multiply(&matrices, n, columns, scratch);
+                });
+            }
+            return;
+        }
+        let members = &self.members;
+        self.batches
+            .apply(fields, &mut self.own, |body, n, columns, scratch| {
+                multiply(members[body].tables.point_sum(), n, columns, scratch);
+            });
     }
 }

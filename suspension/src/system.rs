@@ -113,7 +113,7 @@ impl System {
         let density = self.densities(velocities);
         let mut of_others = vec![0.0; velocities.len()];
         let interactions = &mut self.interactions;
-        interactions.add_velocities(&density, &mut of_others, tolerance)?;
+        interactions.add_velocities(&[&density], &mut of_others, tolerance)?;
         Ok(of_others)
     }
 
@@ -138,7 +138,7 @@ impl System {
         self.solve_bodies(&mut density);
         let added = self
             .interactions
-            .add_velocities(&density, velocities, tolerance);
+            .add_velocities(&[&density], velocities, tolerance);
         self.density = density;
         let layout = self.interactions.layout();
         for (body, before) in before {

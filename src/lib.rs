@@ -22,13 +22,13 @@
 //!
 //!     let mut solver = Solver::new(Options::tolerance(1e-4));
 //!     let answer = solver.solve(&suspension)?; // an error if the tolerance is missed
-//!     println!("it sinks with {}", answer.bodies[1].motion.velocity);
-//!     println!("force of the held rod on the fluid: {}", answer.bodies[0].wrench.force);
+//!     println!("it sinks with {:?}", answer.bodies[1].motion.velocity);
+//!     println!("force of the held rod on the fluid: {:?}", answer.bodies[0].wrench.force);
 //!
 //!     let flow = answer.flow.at(&[Point3::new(2.0, 0.0, 0.0), Point3::origin()])?;
 //!     assert!(flow[0].is_some() && flow[1].is_none()); // in the fluid, inside a body
 //!     let surface = answer.surface(0)?; // points, normals, weights, velocity, traction, pressure
-//!     println!("traction at {}: {}", surface.points[0], surface.traction[0]);
+//!     println!("traction at {:?}: {:?}", surface.points[0], surface.traction[0]);
 //!     let folder = std::env::temp_dir();
 //!     let picture = View::of(&suspension, &answer)?.picture(Quantity::Speed)?;
 //!     std::fs::write(folder.join("rods.svg"), picture)?;
@@ -85,7 +85,7 @@ pub use stokes_suspension as suspension;
 #[doc(inline)]
 pub use bodies_of_revolution::{
     Biconcave, Capsule, CurveError, Frame, FunctionCurve, Gap, GeneratingCurve, Meridian, Panels,
-    Polar, Profile, RigidMotion, Shape, Spheroid, Torus, Wrench, gaps,
+    Polar, Profile, RigidMotion, Shape, Spheroid, Torus, Wrench,
 };
 #[doc(inline)]
 pub use body::kernel::FlowAt;

@@ -74,17 +74,23 @@ enum Rest {
 /// Why a flow cannot be evaluated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FlowError {
-    /// A target has a coordinate that is not finite.
-    #[error("target {index} has a coordinate that is not finite")]
-    NotFinite {
+    /// A target has a coordinate that is not finite, or overflows when it is turned.
+    #[error(
+        "target {index} has a coordinate {value:e}: expected a number of at most 1e300 in magnitude"
+    )]
+    Target {
         /// Its place among the targets.
         index: usize,
+        /// The coordinate.
+        value: f64,
     },
     /// A quadrature rule is missing.
     #[error(transparent)]
     Quadrature(#[from] QuadratureError),
 }
 
+/// The largest coordinate of a target.
+const FARTHEST: f64 = 1e300;
 /// How near a point is beside another, in widths of the latter's share of the surface: there a
 /// gradient's kernel still leaves ten digits.
 const BESIDE: f64 = 0.03;
@@ -114,7 +120,7 @@ impl Flow {
     /// the quadrature below `tolerance` relative to the densities.
     ///
     /// # Errors
-    /// [`FlowError::NotFinite`] for a target that is not a point.
+    /// [`FlowError::Target`] for a target that is not a point.
     pub fn at(&self, targets: &[Point3<f64>], tolerance: f64) -> Result<Vec<FlowAt>, FlowError> {
         let found = self.evaluate::<false>(targets, tolerance)?;
         Ok(found.into_iter().map(FlowAt::from).collect())
@@ -123,7 +129,7 @@ impl Flow {
     /// The same with the velocity gradient, and so the stress.
     ///
     /// # Errors
-    /// [`FlowError::NotFinite`] for a target that is not a point.
+    /// [`FlowError::Target`] for a target that is not a point.
     pub fn gradient_at(
         &self,
         targets: &[Point3<f64>],
@@ -286,9 +292,7 @@ impl Flow {
         targets: &[Point3<f64>],
         tolerance: f64,
     ) -> Result<Vec<FlowGradientAt>, FlowError> {
-        if let Some(index) = first_not_finite(targets) {
-            return Err(FlowError::NotFinite { index });
-        }
+        check_targets(targets)?;
         let far = self.far()?;
         let separation = far.separation(&self.discretization, tolerance);
         let is_far = self.are_far(targets, &separation);
@@ -438,9 +442,18 @@ fn limit(discretization: &Discretization, sight: Sight, normal: [f64; 2], side: 
     Sight { gap, ..sight }
 }
 
-/// The first target with a coordinate that is not finite.
-pub fn first_not_finite(targets: &[Point3<f64>]) -> Option<usize> {
-    (targets.iter()).position(|x| !x.iter().all(|x| x.is_finite()))
+/// Refuses targets that are not points, or too far away.
+///
+/// # Errors
+/// [`FlowError::Target`] for the first of them.
+pub fn check_targets(targets: &[Point3<f64>]) -> Result<(), FlowError> {
+    for (index, target) in targets.iter().enumerate() {
+        let bad = |x: &&f64| x.is_nan() || x.abs() > FARTHEST;
+        if let Some(&value) = target.iter().find(bad) {
+            return Err(FlowError::Target { index, value });
+        }
+    }
+    Ok(())
 }
 
 /// Fields of [`VelocityPressure`] and of [`VelocityPressureGradient`].

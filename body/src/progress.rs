@@ -8,6 +8,9 @@ pub trait Progress: Sync {
     /// This many more steps of the stage are done.
     fn advance(&self, steps: usize);
 
+    /// One of several like questions begins, the `number`-th (from 1) of `of`.
+    fn begin_question(&self, _what: &'static str, _number: usize, _of: usize) {}
+
     /// A solution begins, the `round`-th (from 1) to its question. The one before it has this
     /// estimated error, and is not good enough.
     fn begin_round(&self, _round: usize, _error_estimate: Option<f64>) {}

@@ -19,7 +19,11 @@ pub struct OutputOptions {
 pub(super) fn read_output(node: Node<'_>) -> Result<OutputOptions, CaseError> {
     let section = Section::new(node, &["directory", "vtk"])?;
     let directory = section.read("directory", |node| {
-        Ok(PathBuf::from(node.string("the path of a folder")?))
+        let path = node.string("the path of a folder")?;
+        if path.contains(char::is_control) {
+            return Err(node.expected("the path of a folder, without control characters"));
+        }
+        Ok(PathBuf::from(path))
     })?;
     let vtk = section.read("vtk", Node::boolean)?.unwrap_or_default();
     Ok(OutputOptions { directory, vtk })

@@ -95,7 +95,8 @@ impl<'a> Section<'a> {
     }
 
     fn path(&self, key: &str) -> String {
-        let shown: String = key.chars().take(60).collect();
+        // A control character would act on the terminal.
+        let shown: String = key.escape_debug().take(60).collect();
         if self.node.key.is_empty() {
             shown
         } else {

@@ -85,6 +85,11 @@ pub(super) fn read_shapes(
 ) -> Result<BTreeMap<String, Located<ShapeSpec>>, CaseError> {
     let mut shapes = BTreeMap::new();
     for (name, node) in Section::open(node)?.entries() {
+        if name.contains(char::is_control) {
+            let message =
+                format!("the shape's name {name:?}: expected one without control characters");
+            return Err(node.error(message));
+        }
         let shape = read_shape(&node, folder)?;
         shapes.insert(name.to_owned(), node.located(shape));
     }

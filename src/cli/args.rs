@@ -39,8 +39,9 @@ A first case, the drag of a sphere (the force is 6 pi in z):
 const RESISTANCE_NOTE: &str = "\
 About each shape's origin, its axis along z: six by six matrices from velocity and
 angular velocity to the force and torque exerted on the fluid, and back; the functions
-XA YA YB XC YC and xa ya yb xc yc of Kim & Karrila (1991, sections 5.2, 5.3) for
-viscosity 1; and the centre of reaction, about which nothing couples.";
+XA YA YB XC YC, those in a strain XG YG YH XM YM ZM, and xa ya yb xc yc of Kim & Karrila
+(1991, sections 5.2, 5.3) for viscosity 1; the centre of reaction, about which nothing
+couples; the intrinsic viscosity and Bretherton's constant.";
 
 const CONVERGE_NOTE: &str = "\
 The study: a spheroid 0.5 x 1, boundary data from five random Stokeslets inside,
@@ -54,7 +55,7 @@ to the folder, once all is done.";
 #[command(name = "axistokes", version, after_help = EXAMPLES)]
 pub struct Arguments {
     /// Threads to use; 0 takes one per core.
-    #[arg(long, global = true, default_value_t = 0, value_name = "N",
+    #[arg(long, global = true, default_value_t = 0, value_name = "N", allow_negative_numbers = true,
           value_parser = clap::value_parser!(u16).range(0..=1024))]
     pub threads: u16,
     /// What to do.
@@ -134,7 +135,7 @@ pub struct Gaps {
     /// The case file; what is asked of its bodies does not matter.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// Show pairs that are no farther apart; if not given, than the size of the larger one.
+    /// Show pairs at most LENGTH apart; if not given, at most as far apart as the larger is long.
     #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true)]
     pub within: Option<f64>,
     /// Print one JSON object and nothing else on stdout.
@@ -189,7 +190,12 @@ pub struct Converge {
     #[arg(long, value_name = "NODES", value_parser = order)]
     pub order: Option<usize>,
     /// What the random Stokeslets and rotation come from.
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        allow_negative_numbers = true
+    )]
     pub seed: u64,
     /// For tests: as few resolutions as show convergence.
     #[arg(long, hide = true)]

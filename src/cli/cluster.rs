@@ -1,6 +1,7 @@
 //! `axistokes gaps` and `axistokes grand`: what bodies in their places are to each other, whatever
 //! is asked of them.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use super::args::{Gaps, Grand};
@@ -8,9 +9,9 @@ use super::failure::Failure;
 use super::progress_bar::StderrBar;
 use super::streams;
 use axistokes::case::{Case, CaseError};
-use axistokes::geometry::{Placed, Relation};
+use axistokes::geometry::Relation;
 use axistokes::output::digits::Known;
-use axistokes::output::{Input, exact};
+use axistokes::output::{Input, Place, exact};
 use axistokes::solve::{SolveError, explain, question_of};
 use axistokes::suspension::Body;
 use axistokes::{GrandMatrix, Solver, SuspensionError};
@@ -20,15 +21,8 @@ use serde_json::{Value, json};
 pub fn gaps(arguments: &Gaps) -> Result<(), Failure> {
     let case = Case::read(&arguments.case).map_err(SolveError::from)?;
     let (suspension, _) = question_of(&case).map_err(SolveError::from)?;
-    let placed = suspension.bodies.iter().map(|body| Placed {
-        curve: &*body.shape,
-        frame: body.frame,
-        reach: arguments
-            .within
-            .unwrap_or(2.0 * body.shape.extent() * body.frame.scale()),
-    });
-    let found = axistokes::gaps(&placed.collect::<Vec<_>>())
-        .map_err(|error| explain(&case, error.into()))?;
+    let found =
+        (suspension.gaps(arguments.within)).map_err(|error| explain(&case, error.into()))?;
     let relation = |relation| match relation {
         Relation::Apart => "apart",
         Relation::Touching => "touching",
@@ -88,7 +82,10 @@ pub fn grand(arguments: &Grand) -> Result<(), Failure> {
     let mobility = (solver.grand_mobility(&suspension, &bar)).map_err(explained)?;
     drop(bar);
     let text = if arguments.json {
-        format!("{}\n", grand_json(&case, &resistance, &mobility)?)
+        format!(
+            "{}\n",
+            grand_json(&case, &suspension.bodies, &resistance, &mobility)?
+        )
     } else {
         grand_table(&case, &suspension.bodies, &resistance, &mobility)
     };
@@ -104,6 +101,7 @@ pub fn grand(arguments: &Grand) -> Result<(), Failure> {
 
 fn grand_json(
     case: &Case,
+    bodies: &[Body],
     resistance: &GrandMatrix,
     mobility: &GrandMatrix,
 ) -> Result<Value, Failure> {
@@ -119,6 +117,14 @@ fn grand_json(
     };
     let mut report =
         serde_json::to_value(Input::of(case)).map_err(|error| Failure::Other(error.to_string()))?;
+    let places = case.bodies.iter().zip(bodies);
+    let places: Vec<Place> = places
+        .map(|(body, placed)| Place::of(body, placed))
+        .collect();
+    let shapes = (case.shapes.iter()).map(|(name, shape)| (name, &shape.value));
+    let shapes: BTreeMap<_, _> = shapes.collect();
+    report["bodies"] = json!(places);
+    report["shapes"] = json!(shapes);
     report["resistance"] = of(resistance);
     report["mobility"] = of(mobility);
     Ok(report)

@@ -53,7 +53,7 @@ impl Files {
             written.push((folder, vec![(name.clone(), drawn)]));
         }
         if let Some(folder) = &self.vtk {
-            progress.begin("surface", 0);
+            progress.begin("files for VTK", 0);
             written.push((folder, vtk_files(case, solved, &view, progress)?));
         }
         if progress.is_cancelled() {

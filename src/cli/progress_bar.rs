@@ -5,8 +5,8 @@ use super::streams;
 use axistokes::progress::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{IsTerminal, stderr};
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// How long a computation stays quiet.
@@ -25,6 +25,8 @@ static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 pub struct StderrBar {
     bar: ProgressBar,
     start: Instant,
+    /// Which of several questions it is, as a prefix.
+    question: Mutex<String>,
     /// A bar that is not shown yet.
     hidden: AtomicBool,
     /// When the last line was written, if lines are.
@@ -43,6 +45,7 @@ impl StderrBar {
         Self {
             bar,
             start: Instant::now(),
+            question: Mutex::default(),
             hidden: AtomicBool::new(terminal),
             last_line: (!terminal).then(|| Mutex::new(None)),
         }
@@ -77,6 +80,12 @@ impl StderrBar {
         });
     }
 
+    /// Which of several questions it is; empty if there is one.
+    fn question(&self) -> String {
+        let question = self.question.lock();
+        question.unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
     /// Writes a line, if it is time for one: this long after the last.
     fn say(&self, pause: Duration, line: impl FnOnce() -> String) {
         // Whoever finds it locked would only say the same once more.
@@ -104,17 +113,24 @@ impl Progress for StderrBar {
         self.show_if_late();
     }
 
+    fn begin_question(&self, what: &'static str, number: usize, of: usize) {
+        let mut question = self.question.lock().unwrap_or_else(PoisonError::into_inner);
+        *question = format!("{what} {number} of {of}: ");
+    }
+
     fn begin_round(&self, round: usize, error: Option<f64>) {
+        let question = self.question();
         let Some(error) = error else {
-            self.bar.set_prefix("");
+            self.bar.set_prefix(question);
             return;
         };
-        self.bar
-            .set_prefix(format!("round {round} (error so far {error:.0e}): "));
+        self.bar.set_prefix(format!(
+            "{question}round {round} (error so far {error:.0e}): "
+        ));
         self.say(PAUSE, || {
             let ended = round.saturating_sub(1);
             format!(
-                "round {ended}: estimated error {error:.1e}, going on with finer panels or modes"
+                "{question}round {ended}: estimated error {error:.1e}, going on with finer panels or modes"
             )
         });
     }

@@ -2,13 +2,13 @@
 //!
 //! A number is shown to two digits beyond its estimated error, and never with fewer than four
 //! digits or more than thirteen. A number of which no digit is right is shown as 0: one below a
-//! hundred-thousandth of its estimated error, or below 1e-14 of the scale of its quantity or of the
-//! largest component of its vector. In the tests estimates were up to 160 times the error.
+//! thousandth of its estimated error, or below 1e-14 of the scale of its quantity or of the largest
+//! component of its vector. Estimates are up to a few hundred times the error, as a rule.
 
 /// Numbers below this part of their scale are rounding.
 const ROUNDING: f64 = 1e-14;
 /// Numbers below this part of their estimated error are zero for all one knows.
-const HIDDEN: f64 = 1e-5;
+const HIDDEN: f64 = 1e-3;
 /// Digits beyond the estimated error.
 const BEYOND: f64 = 2.0;
 /// Fewest and most digits.
@@ -130,10 +130,10 @@ mod tests {
         // Beside a component that is larger than the scale there is more rounding.
         let large = exact.row(&[5e3, 4e-11], &[]);
         assert_eq!(words(&large), ["5.000000000000e+03", "0"]);
-        // A hundred-thousandth of an error of 1e-5.
+        // A thousandth of an error of 1e-5.
         let known = Known::relative(1e-6, 10.0);
-        let beside = known.row(&[5.0, 9e-11, 1.1e-10], &[]);
-        assert_eq!(words(&beside), ["5.0000000e+00", "0", "1.100e-10"]);
+        let beside = known.row(&[5.0, 9e-9, 1.1e-8], &[]);
+        assert_eq!(words(&beside), ["5.0000000e+00", "0", "1.100e-08"]);
     }
 
     #[test]

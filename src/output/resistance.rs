@@ -142,7 +142,7 @@ impl ResistanceReport {
         writeln!(
             out,
             "matrices about the origin of the shape, its axis along z; functions for viscosity 1, named as in Kim & Karrila (1991), not divided by 6 pi a:\n  \
-             T = YB U x d in a translation U across the axis d, and angular velocity = yb F x d under such a force F"
+             translation U across the axis d: torque YB (U x d); force F across it: angular velocity yb (F x d)"
         )?;
         self.shapes
             .iter()

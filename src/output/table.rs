@@ -115,6 +115,8 @@ fn write_bodies(out: &mut String, case: &Case, report: &Report) -> fmt::Result {
         let mut errors = format!("stresslet {:.1e}", answer.stresslet_error_estimate);
         if let Some(error) = answer.power_error_estimate {
             errors += &format!(", power {error:.1e}");
+        } else if answer.power.is_some() {
+            errors += ", power not known";
         }
         writeln!(
             out,
@@ -229,34 +231,27 @@ fn write_probes(out: &mut String, report: &Report) -> fmt::Result {
         "\nprobes; total velocity, pressure vanishing at infinity (estimated error of the pressures: {:.1e})",
         report.pressure_error_estimate
     )?;
+    let exactly = |x: f64| exact(x).len();
+    let coordinates = report.probes.iter().flat_map(|probe| probe.point);
+    let width = coordinates.map(exactly).max().unwrap_or(0).max(10);
     writeln!(
         out,
-        "{:>6}  {:>10}  {:>10}  {:>10}  {:>20}  {:>20}  {:>20}  {:>20}",
+        "{:>6}  {:>width$}  {:>width$}  {:>width$}  {:>20}  {:>20}  {:>20}  {:>20}",
         "probe", "x", "y", "z", "velocity x", "velocity y", "velocity z", "pressure"
     )?;
     let scales = Scales::new(report);
     let (flow, pressure) = (scales.flow(), scales.pressure());
     for (i, probe) in report.probes.iter().enumerate() {
-        let [x, y, z] = probe.point.map(coordinate);
+        let [x, y, z] = probe.point.map(exact);
         writeln!(
             out,
-            "{:>6}  {x:>10}  {y:>10}  {z:>10}  {}  {}",
+            "{:>6}  {x:>width$}  {y:>width$}  {z:>width$}  {}  {}",
             i + 1,
             flow.row(&probe.velocity, &[]),
             pressure.number(probe.pressure)
         )?;
     }
     Ok(())
-}
-
-/// A coordinate in its column.
-fn coordinate(x: f64) -> String {
-    let exact = exact(x);
-    if exact.len() <= 10 {
-        exact
-    } else {
-        format!("{x:.3e}")
-    }
 }
 
 /// All digits of a number, with an exponent if that is shorter.

@@ -61,7 +61,7 @@ impl Question {
         let insides = Insides::new(bodies.map(|body| (&body.shape, body.frame)))
             .map_err(|(body, error)| at_shape(case, &case.bodies[body], &error))?;
         let one = case.bodies.len() == 1;
-        for probe in &case.probes {
+        for (number, probe) in (1..).zip(&case.probes) {
             if let Some(body) = insides.body_at(probe.value.into()) {
                 let name = if one {
                     "the body".into()
@@ -69,7 +69,7 @@ impl Question {
                     name(case, body)
                 };
                 let message = format!(
-                    "probes.points: {:?} lies inside {name}: expected a point in the fluid",
+                    "probes.points: point {number}, {:?}, lies inside {name}: expected a point in the fluid",
                     probe.value
                 );
                 return Err(case.error(probe.line, message));

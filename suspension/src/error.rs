@@ -43,6 +43,9 @@ pub enum SuspensionError {
     /// A tolerance that no answer can have.
     #[error("a tolerance of {0:e}: expected one from 1e-14 to less than 1")]
     Tolerance(f64),
+    /// A tolerance that no flow can have.
+    #[error("a tolerance of {0:e} for a flow: expected one above 0 and below 1")]
+    FlowTolerance(f64),
     /// An equation for the inside of bodies.
     #[error(
         "the interior double layer is not an equation for a suspension: expected the combined field or the single layer"

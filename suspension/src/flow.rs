@@ -11,7 +11,7 @@ use bodies_of_revolution::{Ball, Frame, Insides, Neighbours, RigidMotion, Shape,
 use nalgebra::{Matrix3, Point3, Vector3};
 use rayon::prelude::*;
 use stokes_body::discretization::Discretization;
-use stokes_body::flow::{Flow as FlowOfBody, FlowError, SurfaceStress, first_not_finite};
+use stokes_body::flow::{Flow as FlowOfBody, FlowError, SurfaceStress, check_targets};
 use stokes_body::kernel::{FlowAt, FlowGradientAt};
 use stokes_body::linear_flow::LinearFlow;
 use stokes_body::progress::{Progress, Silent};
@@ -168,7 +168,7 @@ impl Flow {
     /// speed](Self::largest_speed); tells `progress` where it is.
     ///
     /// # Errors
-    /// If a point is not finite, or the caller cancels.
+    /// If a point is not finite, the tolerance is not between 0 and 1, or the caller cancels.
     pub fn at_with(
         &self,
         points: &[Point3<f64>],
@@ -197,7 +197,7 @@ impl Flow {
     /// The same to a tolerance, as [`at_with`](Self::at_with).
     ///
     /// # Errors
-    /// If a point is not finite, or the caller cancels.
+    /// If a point is not finite, the tolerance is not between 0 and 1, or the caller cancels.
     pub fn stress_at_with(
         &self,
         points: &[Point3<f64>],
@@ -221,8 +221,9 @@ impl Flow {
         progress: &dyn Progress,
         convert: impl Fn(FlowGradientAt) -> T,
     ) -> Result<Vec<Option<T>>, SuspensionError> {
-        if let Some(index) = first_not_finite(points) {
-            return Err(FlowError::NotFinite { index }.into());
+        check_targets(points)?;
+        if !(tolerance > 0.0 && tolerance < 1.0) {
+            return Err(SuspensionError::FlowTolerance(tolerance));
         }
         let insides = self.insides()?;
         let is_outside = |&place: &usize| insides.body_at(points[place]).is_none();
@@ -263,9 +264,7 @@ impl Flow {
         tolerance: f64,
         progress: &dyn Progress,
     ) -> Result<Vec<FlowGradientAt>, SuspensionError> {
-        if let Some(index) = first_not_finite(targets) {
-            return Err(FlowError::NotFinite { index }.into());
-        }
+        check_targets(targets)?;
         progress.begin("evaluating", targets.len());
         let tolerance = self.of_densities(tolerance);
         let mut evaluated = Vec::with_capacity(targets.len());

@@ -52,7 +52,7 @@ impl Solver {
             })
         };
         let forces = |body: &BodyAnswer| [body.wrench.force, body.wrench.torque];
-        self.grand(suspension, moving, forces, progress)
+        self.grand(suspension, "resistance, column", moving, forces, progress)
     }
 
     /// The grand mobility matrix of the bodies, whatever is asked of them otherwise.
@@ -66,13 +66,14 @@ impl Solver {
     ) -> Result<GrandMatrix, SuspensionError> {
         let pushed = |[force, torque]: [Vector3<f64>; 2]| Motion::Free(Wrench { force, torque });
         let motions = |body: &BodyAnswer| [body.motion.velocity, body.motion.angular_velocity];
-        self.grand(suspension, pushed, motions, progress)
+        self.grand(suspension, "mobility, column", pushed, motions, progress)
     }
 
     /// Column by column; each begins with the resolutions that the one before needed.
     fn grand(
         &mut self,
         suspension: &Suspension,
+        what: &'static str,
         elementary: impl Fn([Vector3<f64>; 2]) -> Motion,
         found: impl Fn(&BodyAnswer) -> [Vector3<f64>; 2],
         progress: &dyn Progress,
@@ -92,6 +93,7 @@ impl Solver {
         let mut error_estimate = 0.0f64;
         let mut before: Option<Answer> = None;
         for column in 0..6 * count {
+            progress.begin_question(what, column + 1, 6 * count);
             let mut unit = [Vector3::zeros(); 2];
             unit[column % 6 / 3][column % 3] = 1.0;
             cluster.bodies[column / 6].motion = elementary(unit);

@@ -206,8 +206,8 @@ impl Interactions {
     }
 
     /// Adds to the modes in `velocities` what the densities of all other bodies do, the modes of
-    /// each density in one of `fields`; all are scaled by the roots of the weights. The error is about `tolerance` relative to all
-    /// velocities that the densities make, in the Euclidean norm.
+    /// each density in one of `fields`; all are scaled by the roots of the weights. The error is
+    /// about `tolerance` relative to all velocities that the densities make, in the Euclidean norm.
     ///
     /// # Errors
     /// If a density is not finite.

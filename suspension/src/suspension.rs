@@ -4,8 +4,9 @@
 //! *free*), or some components of each; and perhaps a slip. All are in one undisturbed flow.
 //! Everything is in the laboratory.
 
-use bodies_of_revolution::{Frame, RigidMotion, Shape, Wrench};
+use bodies_of_revolution::{ContactError, Frame, Gap, Placed, RigidMotion, Shape, Wrench, gaps};
 use nalgebra::{Point3, Unit, UnitQuaternion, Vector3};
+use stokes_body::flow::check_targets;
 use stokes_body::linear_flow::LinearFlow;
 
 use super::error::SuspensionError;
@@ -199,6 +200,20 @@ impl Suspension {
         }
     }
 
+    /// The gaps between pairs of bodies that are at most a length `within` apart; if it is not
+    /// given, at most as far apart as the larger of the two is long.
+    ///
+    /// # Errors
+    /// If a curve has no outline.
+    pub fn gaps(&self, within: Option<f64>) -> Result<Vec<Gap>, ContactError> {
+        let placed = self.bodies.iter().map(|body| Placed {
+            curve: &*body.shape,
+            frame: body.frame,
+            reach: within.unwrap_or(2.0 * body.size()),
+        });
+        gaps(&placed.collect::<Vec<_>>())
+    }
+
     /// Refuses questions that make no sense.
     pub(crate) fn check(&self) -> Result<(), SuspensionError> {
         if self.bodies.is_empty() {
@@ -217,10 +232,6 @@ impl Suspension {
         if !(undisturbed.chain(self.background.gradient.iter())).all(|x| x.is_finite()) {
             return Err(SuspensionError::Background);
         }
-        let bad = |x: &Point3<f64>| !x.iter().all(|x| x.is_finite());
-        match self.probes.iter().position(bad) {
-            Some(index) => Err(stokes_body::flow::FlowError::NotFinite { index }.into()),
-            None => Ok(()),
-        }
+        Ok(check_targets(&self.probes)?)
     }
 }

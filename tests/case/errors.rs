@@ -100,6 +100,24 @@ fn assert_all_refused(name: &str, changes: &[(&str, &str, &[&str])]) {
     }
 }
 
+/// They would act on the terminal, or end a path.
+#[test]
+fn control_characters() {
+    let changes: &[(&str, &str, &[&str])] = &[
+        (
+            "[shapes.ball]",
+            "[shapes.\"a\\u001b[31m\"]",
+            &["case.toml:1:", "a\\u{1b}[31m", "control characters"],
+        ),
+        (
+            "[accuracy]",
+            "[output]\ndirectory = \"a\\u0000b\"\n[accuracy]",
+            &["case.toml:12:", "output.directory", "control characters"],
+        ),
+    ];
+    assert_all_refused("control", changes);
+}
+
 #[test]
 fn unknown_keys() {
     let changes: &[(&str, &str, &[&str])] = &[

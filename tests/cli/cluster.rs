@@ -76,6 +76,10 @@ fn grand_matrices_have_zeros_and_name_bodies_that_overlap() {
         (&report["version"], &report["tolerance"]),
         (&"0.1.0".into(), &1e-3.into())
     );
+    // A matrix tells what it belongs to.
+    let name = report["bodies"][1]["shape"].as_str().unwrap();
+    assert!(report["shapes"][name].is_object(), "{report}");
+    assert_eq!(report["bodies"].as_array().unwrap().len(), 2);
 
     let output = run(&["grand", &pair("overlap", -0.5, "")]);
     let line = text(&output.stderr);

@@ -78,6 +78,27 @@ fn a_probe_next_to_the_surface_is_answered() {
     assert!((velocity.unwrap() - exact).abs() <= 1e-8, "{velocity:?}");
 }
 
+/// The flow near the poles was off by a part that grew with the unit of length.
+#[test]
+fn a_probe_at_the_pole_of_a_sphere_in_picometres_is_answered() {
+    for (name, imposed) in [("held", "velocity"), ("free", "force")] {
+        let output = solve(
+            &format!("large-{name}"),
+            &format!(
+                "[shapes.s]\nkind = 'sphere'\nradius = 1e12\n[[bodies]]\nshape = 's'\n\
+                 {imposed} = [0, 0, 1]\n[probes]\npoints = [[0, 0, 1e12], [0, 0, -1e12]]\n"
+            ),
+        );
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let report = json(&output);
+        let velocity = |of: &serde_json::Value| of["velocity"][2].as_f64().unwrap();
+        let body = velocity(&report["bodies"][0]);
+        for probe in report["probes"].as_array().unwrap() {
+            assert!((velocity(probe) / body - 1.0).abs() <= 1e-13, "{report}");
+        }
+    }
+}
+
 /// The cylinder's first panels were thousands of radii long; refinement then gave up, with an
 /// estimate below the error.
 #[test]

@@ -1,5 +1,6 @@
 //! What cannot be answered is refused with an error that says why.
 
+use axistokes::body::flow::FlowError;
 use axistokes::body::linear_flow::LinearFlow;
 use axistokes::geometry::ContactError;
 use axistokes::suspension::SolveError;
@@ -149,8 +150,20 @@ fn targets_that_are_not_finite() {
     let (error, _) = of(&wrong);
     assert!(matches!(
         error,
-        SuspensionError::Flow(axistokes::body::flow::FlowError::NotFinite { index: 1 })
+        SuspensionError::Flow(FlowError::Target { index: 1, value }) if value.is_nan()
     ));
+}
+
+#[test]
+fn tolerances_of_flows_out_of_range() {
+    let answer = Solver::new(Options::tolerance(1e-3))
+        .solve(&pair(3.0))
+        .expect("an answer");
+    let at = [Point3::new(0.0, 0.0, 10.0)];
+    for tolerance in [0.0, -1.0, 1.0, f64::NAN, f64::INFINITY] {
+        let found = answer.flow.at_with(&at, tolerance, &Silent);
+        assert!(matches!(found, Err(SuspensionError::FlowTolerance(_))));
+    }
 }
 
 #[test]

@@ -140,7 +140,7 @@ pub enum CurveError {
         r: f64,
     },
     /// Two successive profile points that coincide.
-    #[error("points {index} and {} of the profile coincide", .index + 1)]
+    #[error("points {index} and {} of the profile coincide, or are less than 1e-12 of its size or than 1e-100 apart", .index + 1)]
     Duplicate {
         /// Position of the first of the two, from 1.
         index: usize,

@@ -117,7 +117,7 @@ fn degenerate_points_have_the_values_of_their_neighbours() {
 fn the_flow_vanishes_far_away_however_far() {
     let nodes = spheroid();
     let flow = Flow::new(&nodes, layers(&nodes));
-    for size in [1e3, 1e10, 1e75, 1e100, 1e150, 1e155, 1e200, 1e300, f64::MAX] {
+    for size in [1e3, 1e10, 1e75, 1e100, 1e150, 1e155, 1e200, 1e300] {
         for direction in [
             [1.0, 0.0, 0.0],
             [0.0, 0.0, -1.0],
@@ -140,15 +140,23 @@ fn the_flow_vanishes_far_away_however_far() {
 fn coordinates_that_are_no_numbers_are_refused_by_place() {
     let nodes = spheroid();
     let flow = Flow::new(&nodes, layers(&nodes));
-    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+    for bad in [f64::INFINITY, f64::NEG_INFINITY, f64::MAX] {
         for axis in 0..3 {
             let mut targets = vec![Point3::new(0.0, 0.0, 2.0); 4];
             targets[2][axis] = bad;
-            let expected = FlowError::NotFinite { index: 2 };
+            let expected = FlowError::Target {
+                index: 2,
+                value: bad,
+            };
             assert_eq!(flow.at(&targets, 1e-12), Err(expected.clone()));
             assert_eq!(flow.gradient_at(&targets, 1e-12), Err(expected));
         }
     }
+    let nowhere = [Point3::new(0.0, f64::NAN, 0.0)];
+    assert!(matches!(
+        flow.at(&nowhere, 1e-12),
+        Err(FlowError::Target { index: 0, value }) if value.is_nan()
+    ));
     assert_eq!(flow.at(&[], 1e-12), Ok(Vec::new()));
     assert_eq!(flow.gradient_at(&[], 1e-12), Ok(Vec::new()));
 }

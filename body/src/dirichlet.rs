@@ -193,11 +193,15 @@ fn assemble(
             ModalMatrices::assemble(discretization, &DoubleLayer, -0.5, n_max, done)?
         }
     };
-    if formulation != Formulation::CombinedField {
-        matrices.add_projection(discretization, 0, |node| {
-            [node.normal[0], 0.0, node.normal[1]]
-        });
-    }
+    // On the normal both do nothing. What is added is about as strong as the layer.
+    let strength = match formulation {
+        Formulation::CombinedField => return Ok(matrices),
+        Formulation::SingleLayer => discretization.size(),
+        Formulation::InteriorDoubleLayer => 1.0,
+    };
+    matrices.add_projection(discretization, 0, strength, |node| {
+        [node.normal[0], 0.0, node.normal[1]]
+    });
     Ok(matrices)
 }
 

@@ -215,13 +215,14 @@ impl ModalMatrices {
         );
     }
 
-    /// Adds to mode `n` the orthogonal projection, in $L^2$ of the surface, onto a field of that
-    /// mode: a matrix of rank one. `field` gives the field's components (radial, azimuthal, axial)
+    /// Adds to mode `n` a `strength` times the orthogonal projection, in $L^2$ of the surface, onto a
+    /// field of that mode: a matrix of rank one. `field` gives the field's components (radial, azimuthal, axial)
     /// at a node.
     pub fn add_projection(
         &mut self,
         discretization: &Discretization,
         n: usize,
+        strength: f64,
         field: impl Fn(&Node) -> [f64; 3],
     ) {
         let nodes = discretization.nodes();
@@ -236,7 +237,7 @@ impl ModalMatrices {
         let rows = self.rows.as_mut_slice()[n * size..][..size].chunks_mut(self.unknowns);
         for (row, left) in rows.zip(&vector) {
             for (entry, right) in row.iter_mut().zip(&vector) {
-                *entry += left * right / norm_squared;
+                *entry += strength * (left * right / norm_squared);
             }
         }
     }

@@ -121,8 +121,10 @@ fn add_rigid_projection(
     shell: &Shell,
 ) {
     let c = shell.centroid().z;
-    matrices.add_projection(discretization, 0, |_| [0.0, 0.0, 1.0]);
-    matrices.add_projection(discretization, 0, |node| [0.0, node.r, 0.0]);
-    matrices.add_projection(discretization, 1, |_| [1.0, -1.0, 0.0]);
-    matrices.add_projection(discretization, 1, |node| [node.z - c, c - node.z, -node.r]);
+    matrices.add_projection(discretization, 0, 1.0, |_| [0.0, 0.0, 1.0]);
+    matrices.add_projection(discretization, 0, 1.0, |node| [0.0, node.r, 0.0]);
+    matrices.add_projection(discretization, 1, 1.0, |_| [1.0, -1.0, 0.0]);
+    matrices.add_projection(discretization, 1, 1.0, |node| {
+        [node.z - c, c - node.z, -node.r]
+    });
 }

@@ -5,11 +5,13 @@ use std::sync::Arc;
 
 use bodies_of_revolution::{GeneratingCurve, Panels, RigidMotion, Spheroid};
 use nalgebra::{Point3, Vector3};
+use stokes_body::dirichlet::{DirichletSolver, Formulation};
 use stokes_body::discretization::Discretization;
 use stokes_body::flow::Flow;
 use stokes_body::kernel::FlowGradientAt;
 use stokes_body::layers::{LayerWeights, Layers};
 use stokes_body::matrix::{LayerPotential, ModalMatrices};
+use stokes_body::progress::Silent;
 use stokes_body::surface::SurfaceModes;
 
 /// Sizes far apart: at the largest, entries of the two layers differ by 2^80 in magnitude.
@@ -81,6 +83,34 @@ fn flows() {
             assert_eq!(one.velocity, other.velocity, "{size:e}");
             assert_eq!(one.pressure, size * other.pressure, "{size:e}");
             assert_eq!(one.gradient, size * other.gradient, "{size:e}");
+        }
+    }
+}
+
+/// Equations, factored and solved.
+#[test]
+fn densities() {
+    for formulation in [Formulation::CombinedField, Formulation::SingleLayer] {
+        let of = |size: f64| -> Vec<Vector3<f64>> {
+            let on = spheroid(size);
+            let solver = DirichletSolver::new(on.clone(), formulation, 1, &Silent).unwrap();
+            let motion = RigidMotion {
+                velocity: Vector3::new(0.3, 0.2, 1.0),
+                angular_velocity: Vector3::new(0.1, 0.2, 0.3) / size,
+            };
+            let density = solver.solve(&SurfaceModes::of_motion(&on, &motion));
+            let nodes = 0..on.nodes().len();
+            nodes.map(|k| density.at(k, 0.3).into()).collect()
+        };
+        let one = of(1.0);
+        for size in EXPONENTS.map(|exponent| f64::from(exponent).exp2()) {
+            let factor = match formulation {
+                Formulation::SingleLayer => size,
+                _ => 1.0,
+            };
+            for (one, other) in one.iter().zip(of(size)) {
+                assert_eq!(*one, factor * other, "{formulation:?} {size:e}");
+            }
         }
     }
 }

@@ -38,9 +38,12 @@ use stokes_body::surface::SurfaceModes;
 const NODES: usize = 10;
 const AZIMUTHS: usize = 6;
 
-/// The six rigid motions of a shape, in its frame.
+/// The six rigid motions of a shape, in its frame. Angular velocities are in units of 1/size, so
+/// that all six are velocities: with others $G$ would have entries too different to be factored.
 #[derive(Debug)]
 pub(crate) struct RigidTractions {
+    /// Angular velocities are so many times those of the six motions.
+    per_size: f64,
     /// Points on the surface and, motion by motion, the force of the traction on the point's share
     /// of it.
     points: Vec<Vector3<f64>>,
@@ -64,13 +67,15 @@ impl RigidTractions {
     pub fn new(discretization: &Discretization) -> Result<Self, QuadratureError> {
         let solver =
             DirichletSolver::new(discretization.clone(), Formulation::SingleLayer, 1, &Silent)?;
+        let per_size = 1.0 / discretization.size();
+        let units = units(per_size);
         let motions: Vec<SurfaceModes> = (0..6)
-            .map(|k| SurfaceModes::of_motion(discretization, &elementary(k)))
+            .map(|k| SurfaceModes::of_motion(discretization, &elementary(k)).scaled(units[k]))
             .collect();
         let tractions: Vec<SurfaceModes> = motions.iter().map(|on| solver.solve(on)).collect();
         let columns: Vec<Vector6<f64>> = tractions
             .iter()
-            .map(|traction| six_of_wrench(solver.wrench(traction)))
+            .map(|traction| six_of_wrench(solver.wrench(traction)).component_mul(&units))
             .collect();
         let resistance = Matrix6::from_columns(&columns);
         let mobility = resistance.try_inverse().unwrap_or_else(Matrix6::zeros);
@@ -86,6 +91,7 @@ impl RigidTractions {
         });
         let (points, forces) = coarse_points(discretization, &tractions)?;
         Ok(Self {
+            per_size,
             points,
             forces,
             mobility,
@@ -111,6 +117,11 @@ impl RigidTractions {
             }
         }
     }
+}
+
+/// The six motions in units of 1 and 1/length.
+fn units(per_size: f64) -> Vector6<f64> {
+    Vector6::new(1.0, 1.0, 1.0, per_size, per_size, per_size)
 }
 
 /// A few points on the whole curve with the forces of the tractions.
@@ -239,7 +250,12 @@ impl Coarse {
         let mut rows = vec![0.0; size * size];
         for (i, (rows, (body, tractions))) in rows.chunks_mut(6 * size).zip(&bodies).enumerate() {
             let felt = match &constraints[*body] {
-                Some(constraint) => constraint.on_motions() * tractions.mobility,
+                Some(constraint) => {
+                    let per_size = tractions.per_size;
+                    let [to, from] = [1.0 / per_size, per_size].map(units);
+                    let projected = constraint.on_motions() * Matrix6::from_diagonal(&from);
+                    Matrix6::from_diagonal(&to) * projected * tractions.mobility
+                }
                 None => tractions.mobility,
             };
             for (j, other) in in_lab.iter().enumerate() {

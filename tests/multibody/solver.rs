@@ -2,7 +2,8 @@
 
 use axistokes::suspension::{SolveError, SuspensionError};
 use axistokes::{
-    Accuracy, Answer, Body, Frame, Motion, Options, Silent, Slip, Solver, Suspension, Wrench,
+    Accuracy, Answer, Body, Component, Frame, Motion, Options, Silent, Slip, Solver, Suspension,
+    Wrench,
 };
 use nalgebra::{Point3, UnitQuaternion, Vector3};
 
@@ -187,6 +188,47 @@ fn viscosity_scales() {
     // Seen: 7.3e-7; the iteration ends at 1e-6.
     let missed = (force + five.bodies[1].wrench.force).norm() / force.norm();
     assert!(missed < 5e-6, "{missed:.1e}");
+}
+
+/// Lengths have no unit: a pair held near each other, the second free along one line and to turn, at
+/// sizes where forces and torques differ by many powers of ten.
+#[test]
+fn lengths_scale() {
+    let of = |size: f64| {
+        let rod = spheroid(size, 0.75 * size);
+        let free = Component::Free;
+        let components = [0.0, 0.0, 0.0].map(Component::Imposed);
+        let [x, y, _] = components;
+        let line = [x, y, free(-size), free(0.0), free(size * size), free(0.0)];
+        let bodies = [
+            Body::held(&rod).moving([0.0, 0.0, 1.0]),
+            (Body::held(&rod).at([0.3 * size, 0.0, 2.1 * size]))
+                .along([0.2, 0.0, 1.0])
+                .with_motion(Motion::components(line)),
+        ];
+        let probes = [Point3::new(0.0, 0.0, -size)];
+        let pair = Suspension::new(bodies).with_probes(probes);
+        try_with(&pair, &Options::tolerance(1e-6)).expect("an answer")
+    };
+    let one = of(1.0);
+    for size in [-66, 66].map(|exponent| f64::from(exponent).exp2()) {
+        let other = of(size);
+        for (a, b) in one.bodies.iter().zip(&other.bodies) {
+            let force = (a.wrench.force - b.wrench.force / size).norm();
+            let torque = (a.wrench.torque - b.wrench.torque / (size * size)).norm();
+            let velocity = (a.motion.velocity - b.motion.velocity).norm();
+            let turn = (a.motion.angular_velocity - size * b.motion.angular_velocity).norm();
+            let worst = [force / 20.0, torque / 20.0, velocity, turn];
+            assert!(worst.iter().all(|&x| x < 1e-7), "{size:e}: {worst:?}");
+        }
+        let [a, b] = [&one, &other].map(|answer| answer.probes[0].velocity);
+        assert!((a - b).norm() < 1e-7, "{size:e}: {a} and {b}");
+        let iterations = [&one, &other].map(|answer| answer.statistics.iterations);
+        assert!(
+            iterations[1] <= iterations[0] + iterations[0] / 5,
+            "{iterations:?}"
+        );
+    }
 }
 
 /// A body asked for many times has the stress that it has when asked for once, although so many

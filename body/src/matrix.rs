@@ -215,9 +215,9 @@ impl ModalMatrices {
         );
     }
 
-    /// Adds to mode `n` a `strength` times the orthogonal projection, in $L^2$ of the surface, onto a
-    /// field of that mode: a matrix of rank one. `field` gives the field's components (radial, azimuthal, axial)
-    /// at a node.
+    /// Adds to mode `n` a `strength` times the orthogonal projection, in $L^2$ of the surface, onto
+    /// a field of that mode: a matrix of rank one. `field` gives the field's components (radial,
+    /// azimuthal, axial) at a node.
     pub fn add_projection(
         &mut self,
         discretization: &Discretization,

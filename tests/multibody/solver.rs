@@ -190,8 +190,8 @@ fn viscosity_scales() {
     assert!(missed < 5e-6, "{missed:.1e}");
 }
 
-/// Lengths have no unit: a pair held near each other, the second free along one line and to turn, at
-/// sizes where forces and torques differ by many powers of ten.
+/// Lengths have no unit: a pair held near each other, the second free along one line and to turn,
+/// at sizes where forces and torques differ by many powers of ten.
 #[test]
 fn lengths_scale() {
     let of = |size: f64| {

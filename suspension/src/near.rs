@@ -12,7 +12,7 @@ use nalgebra::{Point3, Vector3};
 use panel_quadrature::QuadratureError;
 use rayon::prelude::*;
 
-use super::tables::Member;
+use super::tables::{Member, Tables};
 use super::upsampling::{self, Upsampling};
 use stokes_body::far::Separation;
 use stokes_body::influence::Buffers;
@@ -190,10 +190,21 @@ impl Near {
 
 impl Places {
     fn new(members: &[Member], tolerance: f64) -> Result<Self, QuadratureError> {
-        let surroundings: Vec<Surrounding> = members
-            .par_iter()
-            .map(|member| Surrounding::new(member, tolerance))
-            .collect();
+        // Made once for all bodies that are alike.
+        let mut alike: Vec<(&Arc<Tables>, Arc<Separations>)> = Vec::new();
+        let mut surroundings: Vec<Surrounding> = Vec::with_capacity(members.len());
+        for Member { tables, frame } in members {
+            let known = alike.iter().find(|(other, _)| Arc::ptr_eq(other, tables));
+            let separations = match known {
+                Some((_, known)) => known.clone(),
+                None => {
+                    let made = Arc::new(Separations::new(tables, tolerance));
+                    alike.push((tables, made.clone()));
+                    made
+                }
+            };
+            surroundings.push(Surrounding::new(separations, frame.scale()));
+        }
         let neighbours = Neighbours::new((members.iter().zip(&surroundings)).map(
             |(member, around)| Ball {
                 center: member.frame.center(),
@@ -217,21 +228,20 @@ impl Places {
     }
 }
 
-/// From where on a body is resolved, and how far from its centre that may be.
-struct Surrounding {
-    separation: Separation,
+/// From where on a shape is resolved, in its frame.
+struct Separations {
+    points: Separation,
     /// With more points, from few to many.
     finer: Vec<Separation>,
-    /// In the laboratory, of the sphere about the centre that the body fits in.
+    /// Of the sphere about the centre that the shape fits in.
     radius: f64,
-    /// In the laboratory, the distance from that sphere beyond which everything is resolved.
+    /// The distance from that sphere beyond which everything is resolved.
     reach: f64,
 }
 
-impl Surrounding {
-    fn new(member: &Member, tolerance: f64) -> Self {
-        let tables = &member.tables;
-        let separation = Separation::of_resolved(
+impl Separations {
+    fn new(tables: &Tables, tolerance: f64) -> Self {
+        let points = Separation::of_resolved(
             &tables.discretization,
             tables.n_max,
             [tables.discretization.order(), tables.grid().azimuths()],
@@ -241,12 +251,28 @@ impl Surrounding {
             upsampling::separation(&tables.discretization, tables.n_max, level, tolerance)
         });
         let radius = tables.discretization.size();
-        let scale = member.frame.scale();
         Self {
-            reach: scale * separation.reach(radius),
-            radius: scale * radius,
+            reach: points.reach(radius),
+            radius,
             finer: finer.collect(),
-            separation,
+            points,
+        }
+    }
+}
+
+/// The same of a body, its lengths in the laboratory.
+struct Surrounding {
+    separations: Arc<Separations>,
+    radius: f64,
+    reach: f64,
+}
+
+impl Surrounding {
+    fn new(separations: Arc<Separations>, scale: f64) -> Self {
+        Self {
+            radius: scale * separations.radius,
+            reach: scale * separations.reach,
+            separations,
         }
     }
 }
@@ -286,7 +312,12 @@ fn visit(points: &[Point3<f64>], source: usize, other: &Member, around: &Surroun
         }
         let at = other.frame.point_to_body(*point);
         let seen = Meridian::of(&at);
-        let is_kept = |panel| around.separation.is_kept(discretization, seen, panel);
+        let is_kept = |panel| {
+            around
+                .separations
+                .points
+                .is_kept(discretization, seen, panel)
+        };
         if !panels.clone().all(is_kept) {
             let ring = [seen.r, seen.z].map(|x| (x / grain).round() as i64);
             near.push((ring, index, at));
@@ -305,10 +336,10 @@ fn visit(points: &[Point3<f64>], source: usize, other: &Member, around: &Surroun
         let before = [visit.panels.len(), visit.finer.len()];
         for panel in panels.clone() {
             let keeps = |separation: &Separation| separation.is_kept(discretization, seen, panel);
-            if keeps(&around.separation) {
+            if keeps(&around.separations.points) {
                 continue;
             }
-            match around.finer.iter().position(keeps) {
+            match around.separations.finer.iter().position(keeps) {
                 Some(level) => visit.finer.push((panel as u32, level)),
                 None => visit.panels.push(panel as u32),
             }

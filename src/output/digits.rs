@@ -1,9 +1,9 @@
 //! Numbers in tables: as many digits as are known, and zeros that are zeros.
 //!
 //! A number is shown to two digits beyond its estimated error, and never with fewer than four
-//! digits or more than thirteen. A number of which no digit is right is shown as 0: one below a
+//! digits or more than thirteen. A number that is taken for noise is shown as 0: one below a
 //! thousandth of its estimated error, or below 1e-14 of the scale of its quantity or of the largest
-//! component of its vector. Estimates are up to a few hundred times the error, as a rule.
+//! component of its vector.
 
 /// Numbers below this part of their scale are rounding.
 const ROUNDING: f64 = 1e-14;

@@ -6,7 +6,7 @@
 
 use nalgebra::{Unit, Vector3};
 
-use bodies_of_revolution::{Frame, Gap, GeneratingCurve, Placed, gaps};
+use bodies_of_revolution::{ContactError, Frame, Gap, GeneratingCurve, Placed, gaps};
 
 use super::error::SuspensionError;
 use super::suspension::Body;
@@ -27,16 +27,22 @@ const NARROW: f64 = 0.2;
 /// The gaps between bodies that are no farther apart than `reach` sizes; an error if any are not
 /// apart.
 pub(crate) fn gaps_within(bodies: &[Body], reach: f64) -> Result<Vec<Gap>, SuspensionError> {
-    let placed: Vec<Placed<'_>> = (bodies.iter())
-        .map(|body| Placed {
-            curve: &*body.shape,
-            frame: body.frame,
-            reach: reach * body.size(),
-        })
-        .collect();
-    let gaps = gaps(&placed)?;
+    let gaps = gaps_of(bodies, |body| reach * body.size())?;
     gaps.iter().try_for_each(|gap| gap.check(0.0))?;
     Ok(gaps)
+}
+
+/// The gaps between pairs of bodies that are no farther apart than the larger of their reaches.
+pub(crate) fn gaps_of(
+    bodies: &[Body],
+    reach: impl Fn(&Body) -> f64,
+) -> Result<Vec<Gap>, ContactError> {
+    let placed = bodies.iter().map(|body| Placed {
+        curve: &*body.shape,
+        frame: body.frame,
+        reach: reach(body),
+    });
+    gaps(&placed.collect::<Vec<_>>())
 }
 
 /// Whether a gap between bodies is narrow.

@@ -208,10 +208,10 @@ impl Checker {
         let [solved, forces] = Part::ALL.map(field);
         let mut velocities = vec![0.0; solved.len()];
         // Bodies that are held, or that nothing pushes, have no layers of the second part.
-        let fields = match forces.iter().any(|&x| x != 0.0) {
-            true => vec![&solved[..], &forces],
-            false => vec![&solved[..]],
-        };
+        let mut fields = vec![&solved[..]];
+        if forces.iter().any(|&x| x != 0.0) {
+            fields.push(&forces);
+        }
         let kept = self.interactions.take();
         let mut interactions = match kept.filter(|kept| kept.densities() == fields.len()) {
             Some(kept) => kept,

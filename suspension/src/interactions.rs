@@ -232,11 +232,10 @@ impl Interactions {
             self.sums.apply(points, &strengths, tolerance)?.velocity
         };
         self.seconds_of_sums += start.elapsed().as_secs_f64();
-        for (density, field) in self.densities.iter_mut().zip(fields) {
-            density.own.clear();
-            if few {
-                density.own.resize(self.fields.len(), 0.0);
-            } else {
+        // A sum over all points counts a body's own.
+        if !few {
+            for (density, field) in self.densities.iter_mut().zip(fields) {
+                density.own.clear();
                 density.own.extend_from_slice(field);
                 density.sum_own_points(&self.fields, self.uses);
             }
@@ -274,7 +273,7 @@ impl Interactions {
                         }
                     }
                     grid.add_modes(in_body, scratch, modes);
-                    for density in densities {
+                    for density in densities.iter().filter(|_| !few) {
                         for (mode, own) in modes.iter_mut().zip(&density.own[layout.of(body)]) {
                             *mode -= own;
                         }

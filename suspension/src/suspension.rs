@@ -4,11 +4,12 @@
 //! *free*), or some components of each; and perhaps a slip. All are in one undisturbed flow.
 //! Everything is in the laboratory.
 
-use bodies_of_revolution::{ContactError, Frame, Gap, Placed, RigidMotion, Shape, Wrench, gaps};
+use bodies_of_revolution::{ContactError, Frame, Gap, RigidMotion, Shape, Wrench};
 use nalgebra::{Point3, Unit, UnitQuaternion, Vector3};
 use stokes_body::flow::check_targets;
 use stokes_body::linear_flow::LinearFlow;
 
+use super::arrangement::gaps_of;
 use super::error::SuspensionError;
 use super::motion::Motion;
 use super::slip::Slip;
@@ -206,12 +207,7 @@ impl Suspension {
     /// # Errors
     /// If a curve has no outline.
     pub fn gaps(&self, within: Option<f64>) -> Result<Vec<Gap>, ContactError> {
-        let placed = self.bodies.iter().map(|body| Placed {
-            curve: &*body.shape,
-            frame: body.frame,
-            reach: within.unwrap_or(2.0 * body.size()),
-        });
-        gaps(&placed.collect::<Vec<_>>())
+        gaps_of(&self.bodies, |body| within.unwrap_or(2.0 * body.size()))
     }
 
     /// Refuses questions that make no sense.

@@ -144,7 +144,10 @@ fn window_error(width: usize, points: usize, spectrum: &[(f64, f64)], slopes: bo
     let w = width as f64;
     let cutoff = spectrum.last().map_or(PI, |(k, _)| *k) + 2.0 * PI / 3.0;
     let psi = Prolate::new(0.5 * PI * w * (2.0 - cutoff * spacing / PI).max(0.1));
-    let norm = w * psi.integral(1.0);
+    let transforms: Vec<f64> = spectrum
+        .iter()
+        .map(|(k, _)| w * psi.half_integral() * psi.value(0.5 * k * spacing * w / psi.bandwidth()))
+        .collect();
     let mut worst = 0.0_f64;
     for place in 0..PLACES {
         let fraction = (place as f64 + 0.5) / PLACES as f64;
@@ -161,8 +164,7 @@ fn window_error(width: usize, points: usize, spectrum: &[(f64, f64)], slopes: bo
             })
             .collect();
         let (mut error, mut total) = (0.0, 0.0);
-        for &(k, size) in spectrum {
-            let transform = norm * psi.value(0.5 * k * spacing * w / psi.bandwidth());
+        for (&(k, size), transform) in spectrum.iter().zip(&transforms) {
             let (mut real, mut imaginary) = (0.0, 0.0);
             for &(x, value) in &window {
                 real += value * (k * x).cos() / transform;

@@ -16,6 +16,8 @@ pub(crate) struct Prolate {
     value: Vec<f64>,
     /// Legendre coefficients of $\int_0^x \psi$.
     integral: Vec<f64>,
+    /// $C_0$.
+    half_integral: f64,
 }
 
 impl Prolate {
@@ -25,6 +27,7 @@ impl Prolate {
         let integral = antiderivative(&value);
         Self {
             bandwidth,
+            half_integral: legendre::series(&integral, 1.0),
             value,
             integral,
         }
@@ -49,6 +52,11 @@ impl Prolate {
             return 0.0;
         }
         legendre::series_with_derivative(&self.value, x).1
+    }
+
+    /// $C_0 = \int_0^1 \psi$.
+    pub fn half_integral(&self) -> f64 {
+        self.half_integral
     }
 
     /// $\int_0^x \psi$; $\pm C_0$ for $|x| \ge 1$.
@@ -225,7 +233,7 @@ mod tests {
                     .map(|(y, weight)| 0.5 * weight * psi.value(y) * (c * x * y).cos())
                     .sum();
                 assert!(
-                    (transform / psi.integral(1.0) - psi.value(x)).abs() < 1e-14,
+                    (transform / psi.half_integral() - psi.value(x)).abs() < 1e-14,
                     "{c} {x}"
                 );
             }
@@ -236,7 +244,7 @@ mod tests {
     fn nothing_beyond_its_interval() {
         let psi = Prolate::new(12.0);
         assert_eq!((psi.value(1.5), psi.derivative(-2.0)), (0.0, 0.0));
-        assert_eq!(psi.integral(3.0), psi.integral(1.0));
+        assert_eq!(psi.integral(3.0), psi.half_integral());
         assert_eq!(psi.bandwidth(), 12.0);
     }
 }

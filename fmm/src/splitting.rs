@@ -31,8 +31,18 @@ pub(crate) const ROOT_CHARGE: f64 = -3.0 / (8.0 * PI * ROOT_RADIUS);
 pub(crate) struct Splitting {
     psi: Prolate,
     /// Gauss-Legendre nodes on $[0, 1]$.
-    nodes: Vec<f64>,
-    weights: Vec<f64>,
+    rule: Vec<Node>,
+}
+
+/// A node of a quadrature, with what the integrals over it share.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    x: f64,
+    weight: f64,
+    /// $\psi(x)$.
+    psi: f64,
+    /// $1 - \Phi(x)$.
+    beyond: f64,
 }
 
 impl Splitting {
@@ -41,10 +51,19 @@ impl Splitting {
     pub fn new(waves: usize) -> Self {
         let bandwidth = waves as f64 * PI / 3.0;
         let rule = GaussLegendre::new(40 + waves).expect("an order within the limits");
+        let psi = Prolate::new(bandwidth);
+        let rule = rule.iter().map(|(node, weight)| {
+            let x = 0.5 + 0.5 * node;
+            Node {
+                x,
+                weight: 0.5 * weight,
+                psi: psi.value(x),
+                beyond: 1.0 - psi.integral(x) / psi.half_integral(),
+            }
+        });
         Self {
-            psi: Prolate::new(bandwidth),
-            nodes: rule.nodes().iter().map(|x| 0.5 + 0.5 * x).collect(),
-            weights: rule.weights().iter().map(|w| 0.5 * w).collect(),
+            rule: rule.collect(),
+            psi,
         }
     }
 
@@ -76,11 +95,10 @@ impl Splitting {
     /// Transform of $B - B_1$ by its integral:
     /// $-\frac12\int_0^1 \rho^3\,\frac{j_1(k\rho)}{k\rho}\,[1 - \Phi(\rho)]\,d\rho$.
     fn residual_transform(&self, k: f64) -> f64 {
-        let c0 = self.psi.integral(1.0);
-        self.rule()
-            .map(|(rho, weight)| {
-                let beyond = 1.0 - self.psi.integral(rho) / c0;
-                -0.5 * weight * rho.powi(3) * scaled_bessel(1, k * rho) * beyond
+        self.rule
+            .iter()
+            .map(|node| {
+                -0.5 * node.weight * node.x.powi(3) * scaled_bessel(1, k * node.x) * node.beyond
             })
             .sum()
     }
@@ -93,14 +111,15 @@ impl Splitting {
     /// orders follow from $\frac1z\frac d{dz}\frac{j_m(z)}{z^m} = -\frac{j_{m+1}(z)}{z^{m+1}}$. The
     /// error is a few rounding errors of $b_n(0)$.
     pub fn mollified(&self, order: usize, t: f64) -> f64 {
-        let (c, c0) = (self.bandwidth(), self.psi.integral(1.0));
+        let (c, c0) = (self.bandwidth(), self.psi.half_integral());
         let m = order - 1;
         let sum: f64 = self
-            .rule()
-            .map(|(x, weight)| {
-                let cx = c * x;
-                weight
-                    * self.psi.value(x)
+            .rule
+            .iter()
+            .map(|node| {
+                let cx = c * node.x;
+                node.weight
+                    * node.psi
                     * (-cx * cx).powi(m as i32)
                     * scaled_bessel(m, cx * t.sqrt())
             })
@@ -150,10 +169,6 @@ impl Splitting {
     /// nothing to its pressure and gradient, and nothing to any other flow.
     pub fn free_space(&self, k: f64) -> f64 {
         truncated_distance(k * ROOT_RADIUS) * ROOT_RADIUS.powi(4) * self.gamma(0.5 * k)
-    }
-
-    fn rule(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
-        self.nodes.iter().copied().zip(self.weights.iter().copied())
     }
 }
 

@@ -135,17 +135,22 @@ impl Symbol {
         biharmonic: impl Fn(f64) -> f64,
     ) -> Self {
         let cell = (spacing / (2.0 * PI)).powi(3);
+        // Waves of one length share its value, and the square of the length counts in whole steps.
+        let squared = |j: [usize; 3]| j.iter().map(|j| j * j).sum::<usize>();
+        let longest = ball.indices().map(squared).max().unwrap_or(0);
+        let biharmonic: Vec<f64> = (1..=longest)
+            .map(|square| biharmonic(spacing * (square as f64).sqrt()))
+            .collect();
         let table = |term: &Term| {
             ball.indices()
                 .map(|j| {
                     let k = j.map(|j| spacing * j as f64);
-                    let length = square(k).sqrt();
-                    if length == 0.0 {
+                    let Some(shorter) = squared(j).checked_sub(1) else {
                         return if free_space { term.constant } else { 0.0 };
-                    }
+                    };
                     // Each wave stands for its mirror images too.
                     let images: f64 = j.map(|j| if j == 0 { 1.0 } else { 2.0 }).iter().product();
-                    -images * cell * biharmonic(length) * (term.polynomial)(k)
+                    -images * cell * biharmonic[shorter] * (term.polynomial)(k)
                 })
                 .collect()
         };

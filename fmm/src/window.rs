@@ -80,7 +80,7 @@ impl Window {
     pub fn fourier(&self, k: f64) -> f64 {
         let width = self.width as f64;
         let x = 0.5 * k * self.spacing() * width / self.psi.bandwidth();
-        width * self.psi.integral(1.0) * self.psi.value(x)
+        width * self.psi.half_integral() * self.psi.value(x)
     }
 
     /// From the grid to these waves.
@@ -146,6 +146,7 @@ impl Window {
     /// about some centre: cosines above, sines below.
     fn phases(&self, waves: &[f64], side: f64, center: f64, points: usize) -> Mat<f64> {
         let count = waves.len();
+        let transforms: Vec<f64> = waves.iter().map(|k| self.fourier(k * side)).collect();
         Mat::from_fn(2 * count, points, |row, i| {
             let k = waves[row % count];
             let x = center + side * self.position(i);
@@ -154,7 +155,7 @@ impl Window {
             } else {
                 (k * x).sin()
             };
-            wave / self.fourier(k * side)
+            wave / transforms[row % count]
         })
     }
 

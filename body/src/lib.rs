@@ -48,7 +48,7 @@ pub mod progress;
 pub mod refinement;
 pub mod resistance;
 pub mod resolution;
-mod rigid;
+pub mod rigid;
 mod rigid_matrices;
 pub mod shell;
 pub mod special;

@@ -13,8 +13,10 @@ use super::discretization::Discretization;
 use super::surface::SurfaceModes;
 use bodies_of_revolution::{GeneratingCurve, Panels};
 
-/// Nodes per panel where the solver chooses.
-pub const ORDER: usize = 16;
+/// Fewest and most nodes per panel where the solver chooses.
+const ORDERS: [usize; 2] = [6, 16];
+/// Panels of a shape that has nothing small.
+const FEW_PANELS: usize = 4;
 /// Nodes per panel that the checking discretization has beyond the checked one's.
 pub const EXTRA_ORDER: usize = 4;
 /// How far the estimate stays above the difference: the checking solution has an error too.
@@ -41,13 +43,28 @@ pub struct Round<A> {
     pub unresolved: Vec<bool>,
 }
 
-/// The panels that resolve the curve itself well enough to start with.
+/// The panels that resolve the curve itself well enough to start with, and the nodes on each.
+///
+/// Where [`FEW_PANELS`] do, as for bodies without anything small, nodes are as few as the
+/// tolerance allows: one for each digit and four more, an even number. So many resolve a density
+/// about as well as the few modes that it then has. Elsewhere panels shrink towards what is small,
+/// and more nodes on each take fewer in all.
 pub fn first_panels(
     curve: &dyn GeneratingCurve,
     tolerance: f64,
-) -> Result<Panels, bodies_of_revolution::CurveError> {
-    let panels = Panels::resolving(curve, ORDER, tolerance.sqrt().clamp(1e-7, 1e-2))?;
-    Ok(panels.graded_across_joints(curve))
+) -> Result<(Panels, usize), bodies_of_revolution::CurveError> {
+    let [fewest, most] = ORDERS;
+    let digits = -tolerance.log10().round();
+    let order = (digits as usize + 4)
+        .next_multiple_of(2)
+        .clamp(fewest, most);
+    let resolution = tolerance.sqrt().clamp(1e-7, 1e-2);
+    let few = Panels::resolving(curve, order, resolution)?.graded_across_joints(curve);
+    if few.len() <= FEW_PANELS {
+        return Ok((few, order));
+    }
+    let panels = Panels::resolving(curve, most, resolution)?;
+    Ok((panels.graded_across_joints(curve), most))
 }
 
 /// Answers on finer and finer panels until one is estimated to be as good as the tolerance: that

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use bodies_of_revolution::{GeneratingCurve, Panels, curve::volume};
-use nalgebra::Matrix6;
+use nalgebra::{DMatrix, Matrix6};
 use panel_quadrature::QuadratureError;
 
 use super::dirichlet::{DirichletSolver, Formulation};
@@ -13,9 +13,10 @@ use super::error::BodyError;
 use super::linear_flow::LAST_MODE;
 use super::mobility::MobilitySolver;
 use super::refinement::{
-    EXTRA_ORDER, ORDER, Round, error_estimate, first_panels, refine, unresolved_panels,
+    EXTRA_ORDER, Round, error_estimate, first_panels, refine, unresolved_panels,
 };
 use super::resolution::Resolution;
+use super::rigid::inverse_of_resistance;
 use super::strain::{FreeBodyFunctions, StrainFunctions};
 use super::surface::SurfaceModes;
 use crate::progress::Progress;
@@ -73,9 +74,9 @@ impl RigidBodyMatrices {
         tolerance: f64,
         progress: &dyn Progress,
     ) -> Result<Self, BodyError> {
-        let first = first_panels(&*curve, tolerance)?;
+        let (first, order) = first_panels(&*curve, tolerance)?;
         let affordable = |panels: usize| panels <= MOST_PANELS;
-        let round = |panels| checked(&curve, panels, ORDER, progress);
+        let round = |panels| checked(&curve, panels, order, progress);
         Ok(refine(&*curve, first, tolerance, affordable, round)?.answer)
     }
 }
@@ -144,7 +145,8 @@ impl Solved {
                 [held.zm, other.zm, held.zm],
             ])
         };
-        let inverse = self.resistance.0.try_inverse();
+        let held_in_place = DMatrix::from_fn(6, 6, |i, j| self.resistance.0[(i, j)]);
+        let inverse = inverse_of_resistance(&held_in_place);
         largest([
             distance(&self.resistance.0, &finer.resistance.0),
             distance(&self.mobility.0, &finer.mobility.0),
@@ -153,7 +155,7 @@ impl Solved {
             // The held body's functions are differences of larger ones when it is freed.
             of_free(&held.freed(&resistance), [held.xm, held.ym]),
             inverse.map_or(f64::INFINITY, |inverse| {
-                distance(&inverse, &self.mobility.0)
+                distance(&Matrix6::from_fn(|i, j| inverse[(i, j)]), &self.mobility.0)
             }),
         ])
     }

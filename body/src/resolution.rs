@@ -15,7 +15,7 @@ pub struct Resolution {
 
 /// Modes of the solution that checks one of so many.
 pub fn checking_modes(modes: usize) -> usize {
-    modes + 8.max(modes / 4)
+    modes + 4.max(modes / 4)
 }
 
 /// Entries of all the matrices of the solution that checks one with so many panels, nodes on each,

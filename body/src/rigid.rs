@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use bodies_of_revolution::{RigidMotion, Wrench};
-use nalgebra::Vector3;
+use nalgebra::{DMatrix, Vector3};
 
 use super::discretization::Discretization;
 use super::surface::SurfaceModes;
@@ -58,4 +58,17 @@ impl SurfaceModes {
         }
         Wrench { force, torque }
     }
+}
+
+/// The inverse of a resistance matrix, of all six rigid motions or of some directions among them;
+/// none if it has none.
+///
+/// Entries of translation and rotation differ by powers of a length. Each row and column is
+/// multiplied by a power of two first. Otherwise pivots would depend on the unit of length, and
+/// entries that are nothing but rounding would be taken for large ones.
+pub fn inverse_of_resistance(resistance: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let diagonal = resistance.diagonal();
+    let units = DMatrix::from_diagonal(&diagonal.map(|d| (-0.5 * d.abs().log2()).round().exp2()));
+    let inverse = (&units * resistance * &units).try_inverse()?;
+    Some(&units * inverse * &units)
 }

@@ -12,6 +12,7 @@ use stokes_body::kernel::FlowGradientAt;
 use stokes_body::layers::{LayerWeights, Layers};
 use stokes_body::matrix::{LayerPotential, ModalMatrices};
 use stokes_body::progress::Silent;
+use stokes_body::resistance::RigidBodyMatrices;
 use stokes_body::surface::SurfaceModes;
 
 /// Sizes far apart: at the largest, entries of the two layers differ by 2^80 in magnitude.
@@ -111,6 +112,24 @@ fn densities() {
             for (one, other) in one.iter().zip(of(size)) {
                 assert_eq!(*one, factor * other, "{formulation:?} {size:e}");
             }
+        }
+    }
+}
+
+#[test]
+fn resistances_and_mobilities() {
+    let of = |size: f64| {
+        let curve: Arc<dyn GeneratingCurve> = Arc::new(Spheroid::new(size, 0.5 * size).unwrap());
+        RigidBodyMatrices::to_tolerance(curve, 1e-8, &Silent).unwrap()
+    };
+    let one = of(1.0);
+    assert!(one.error_estimate < 1e-8);
+    for size in EXPONENTS.map(|exponent| f64::from(exponent).exp2()) {
+        let other = of(size);
+        assert_eq!(one.error_estimate, other.error_estimate, "{size:e}");
+        for (k, power) in [1, 1, 1, 3, 3, 3].into_iter().enumerate() {
+            let entry = size.powi(power) * one.resistance.0[(k, k)];
+            assert_eq!(entry, other.resistance.0[(k, k)], "{size:e} {k}");
         }
     }
 }

@@ -118,10 +118,7 @@ impl Splitting {
             .iter()
             .map(|node| {
                 let cx = c * node.x;
-                node.weight
-                    * node.psi
-                    * (-cx * cx).powi(m as i32)
-                    * scaled_bessel(m, cx * t.sqrt())
+                node.weight * node.psi * (-cx * cx).powi(m as i32) * scaled_bessel(m, cx * t.sqrt())
             })
             .sum();
         sum / (8.0 * PI * c0 * c0)

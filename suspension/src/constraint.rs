@@ -18,6 +18,7 @@ use bodies_of_revolution::{Frame, RigidMotion, Wrench};
 use faer::MatMut;
 use nalgebra::{DMatrix, DVector, Matrix6, Vector6};
 use stokes_body::dirichlet::DirichletSolver;
+use stokes_body::rigid::inverse_of_resistance;
 use stokes_body::surface::SurfaceModes;
 
 use super::motion::Mixed;
@@ -144,7 +145,7 @@ impl Constraint {
         });
         let loads = DVector::from_iterator(columns.len(), loads);
         let square = free.transpose() * response.resistance * &free;
-        let inverse = square.lu().try_inverse().unwrap_or_else(|| {
+        let inverse = inverse_of_resistance(&square).unwrap_or_else(|| {
             // A resistance has an inverse; without one nothing yields.
             DMatrix::zeros(columns.len(), columns.len())
         });

@@ -11,7 +11,6 @@ use bodies_of_revolution::{RigidMotion, Wrench};
 use stokes_body::kernel::FlowAt;
 use stokes_body::refinement;
 
-use super::check::Miss;
 use super::solution::Solution;
 use super::suspension::Suspension;
 
@@ -58,14 +57,14 @@ fn size_of_shape(solution: &Solution, body: usize) -> f64 {
     solution.classes.of(body).tables.discretization.size()
 }
 
-/// The estimate from what the boundary velocities of many bodies are off by.
+/// The estimate from the largest speed that each body's boundary velocity is off by.
 pub(crate) fn from_misses(
     suspension: &Suspension,
     solution: &Solution,
-    misses: &[Miss],
+    misses: &[f64],
     speed: f64,
 ) -> f64 {
-    let worst = misses.iter().map(|miss| miss.largest).fold(0.0, larger);
+    let worst = misses.iter().copied().fold(0.0, larger);
     if worst == 0.0 {
         return 0.0;
     }
@@ -76,7 +75,7 @@ pub(crate) fn from_misses(
     for (i, body) in suspension.bodies.iter().enumerate() {
         if body.motion.is_held() {
             let size = body.frame.scale() * size_of_shape(solution, i);
-            force = force.max(6.0 * PI * size * misses[i].largest);
+            force = force.max(6.0 * PI * size * misses[i]);
         }
     }
     let forces = relative(force, force_scale(suspension, solution, speed));

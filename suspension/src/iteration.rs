@@ -26,6 +26,17 @@ pub struct Iteration {
 }
 
 impl Iteration {
+    /// This one and what it was after.
+    pub(crate) fn after(mut self, mut before: Self) -> Self {
+        before.history.extend(self.history.drain(1..));
+        Self {
+            iterations: before.iterations + self.iterations,
+            products: before.products + self.products,
+            history: before.history,
+            ..self
+        }
+    }
+
     /// No iteration: the equations were solved directly.
     pub(crate) fn direct() -> Self {
         Self {

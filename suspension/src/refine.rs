@@ -37,6 +37,10 @@ const AIM: f64 = 0.4;
 const NEARLY: f64 = 10.0;
 /// Misses up to so many times what the iteration left may be the iteration's.
 const BLAMED: f64 = 2.0;
+/// What part of the error that is wanted the iteration may leave, and what it aims at if it left
+/// more.
+const MOST_LEFT: f64 = 0.5;
+const AIM_LEFT: f64 = 0.25;
 /// How much better the equations on finer surfaces are solved than those whose error they tell.
 const FINER: f64 = 0.1;
 /// How often more may be asked of them.
@@ -239,6 +243,36 @@ impl Rounds<'_> {
         })
     }
 
+    /// A solution, iterated on where the residual alone would make much of the error that is
+    /// wanted: that is known without a check, but only when forces are. Where gaps are narrow,
+    /// products would have to be better, too, and the next round sees to both.
+    fn solve(
+        &self,
+        assembly: &mut Assembly,
+        start: Option<&Start>,
+    ) -> Result<Solution, SuspensionError> {
+        let suspension = self.suspension;
+        let solution = assembly.solve(suspension, start, self.options, self.progress)?;
+        check_iteration(&solution.iteration, assembly.tolerances())?;
+        let wanted = match (self.wanted, self.options.residual) {
+            (Some(wanted), None) if !self.is_alone() && !self.narrow => wanted,
+            _ => return Ok(solution),
+        };
+        let speed = largest_speed(suspension, &solution);
+        let left = from_misses(suspension, &solution, &solution.residual_speeds, speed);
+        let is_worth_it = left.is_finite() && left > MOST_LEFT * wanted;
+        if !is_worth_it || solution.iteration.stop != Stop::Converged {
+            return Ok(solution);
+        }
+        assembly.tighten(AIM_LEFT * wanted / left);
+        let start = Start::new(&suspension.bodies, &solution);
+        let mut further = assembly.solve(suspension, Some(&start), self.options, self.progress)?;
+        check_iteration(&further.iteration, assembly.tolerances())?;
+        further.seconds = solution.seconds + further.seconds;
+        further.iteration = further.iteration.after(solution.iteration);
+        Ok(further)
+    }
+
     /// One solution and its estimated error. Below `compared_below`, a solution on finer surfaces
     /// tells it, too.
     fn round(
@@ -248,13 +282,15 @@ impl Rounds<'_> {
         compared_below: f64,
     ) -> Result<Round, SuspensionError> {
         let suspension = self.suspension;
-        let solution = assembly.solve(suspension, start, self.options, self.progress)?;
-        check_iteration(&solution.iteration, assembly.tolerances())?;
+        let solution = self.solve(assembly, start)?;
         let begin = Instant::now();
         let misses = assembly.misses(suspension, &solution, self.progress)?;
         let speed = largest_speed(suspension, &solution);
         let mut error_estimate = match &misses {
-            Some(misses) => from_misses(suspension, &solution, misses, speed),
+            Some(misses) => {
+                let largest: Vec<f64> = misses.iter().map(|miss| miss.largest).collect();
+                from_misses(suspension, &solution, &largest, speed)
+            }
             None => 0.0,
         };
         let (mut finer, mut probes) = (None, None);

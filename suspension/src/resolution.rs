@@ -17,16 +17,17 @@ use super::slip::Slip;
 use super::suspension::{Body, Suspension};
 use bodies_of_revolution::Gap;
 use bodies_of_revolution::Meridian;
-use bodies_of_revolution::{GeneratingCurve, Panels, Shape};
+use bodies_of_revolution::{GeneratingCurve, Panel, Panels, Shape};
 use stokes_body::discretization::Discretization;
 use stokes_body::linear_flow;
-use stokes_body::refinement::{ORDER, first_panels};
+use stokes_body::refinement::first_panels;
 use stokes_body::resolution::Resolution;
 use stokes_body::surface::SurfaceModes;
 
-/// What of the digits modes and panels have to resolve in a gap: images are weaker the nearer they
-/// are.
-const GAP_DIGITS: f64 = 0.75;
+/// Modes of bodies among others, for each digit of the tolerance, and how many are enough where no
+/// gap asks for more.
+const MODES_PER_DIGIT: f64 = 2.0;
+const MODES_FAR_APART: usize = 8;
 /// Bisections of one panel at first.
 const DEEPEST: usize = 12;
 /// Most modes.
@@ -46,13 +47,13 @@ pub(crate) fn first(
     let mut resolutions = Vec::with_capacity(suspension.bodies.len());
     for (index, body) in suspension.bodies.iter().enumerate() {
         let at_body = |error| SuspensionError::Curve { body: index, error };
-        let panels = first_panels(&*body.shape, tolerance).map_err(at_body)?;
+        let (panels, order) = first_panels(&*body.shape, tolerance).map_err(at_body)?;
         let gradient = suspension.background.gradient != Matrix3::zeros();
         let last_exact = if gradient { linear_flow::LAST_MODE } else { 1 };
         let of_data = match &body.slip {
             None => last_exact,
             Some(slip) => {
-                let sampled = Discretization::new(body.shape.clone(), panels.clone(), ORDER)?;
+                let sampled = Discretization::new(body.shape.clone(), panels.clone(), order)?;
                 let modes = modes_of_slip(slip, &sampled, tolerance);
                 modes
                     .ok_or(SuspensionError::Velocity { body: index })?
@@ -66,12 +67,15 @@ pub(crate) fn first(
         let modes = if coaxial {
             of_data
         } else {
-            let in_gaps = facing.iter().map(|facing| facing.modes(tolerance));
-            listed(in_gaps.fold(of_data.max(8), usize::max))
+            let rings = rings(&*body.shape, &panels);
+            let in_gaps = facing.iter().map(|facing| facing.modes(&rings, tolerance));
+            let least = (-MODES_PER_DIGIT * tolerance.log10()) as usize;
+            let far_apart = of_data.max(least.min(MODES_FAR_APART));
+            listed(in_gaps.fold(far_apart, usize::max))
         };
         let resolution = Resolution {
-            panels: graded(&*body.shape, panels, &facing, tolerance),
-            order: ORDER,
+            panels: graded(&*body.shape, panels, order, &facing, tolerance),
+            order,
             modes,
         };
         let same = known
@@ -150,38 +154,63 @@ struct Facing {
     point: [f64; 2],
     /// $\delta$.
     depth: f64,
+    /// Where the other body's images gather, at $\delta$ from there, in the half plane.
+    images: Meridian,
+    /// By how much, as a logarithm, they are weaker than the flow that they answer.
+    weaker: f64,
 }
 
 impl Facing {
     fn of(gap: &Gap, index: usize, body: &Body) -> Option<Self> {
         let side = gap.bodies.iter().position(|&b| b == index)?;
         let scale = body.frame.scale();
-        let at = Meridian::of(&body.frame.point_to_body(gap.points[side]));
+        let place = body.frame.point_to_body(gap.points[side]);
+        let outward = body.frame.vector_to_body(gap.normals[side]).normalize();
+        let at = Meridian::of(&place);
         let d = gap.distance / scale;
         let radius = at.r.hypot(at.z);
+        let depth = 0.5 * d + (d * radius + 0.25 * d * d).sqrt();
         Some(Self {
             point: [at.r, at.z],
-            depth: 0.5 * d + (d * radius + 0.25 * d * d).sqrt(),
+            depth,
+            images: Meridian::of(&(place + depth * outward)),
+            weaker: (radius / depth).ln_1p(),
         })
     }
 
-    /// Modes that resolve the ring that faces.
-    fn modes(&self, tolerance: f64) -> usize {
-        let decay = (self.depth / self.point[0]).ln_1p();
-        ((-GAP_DIGITS * tolerance.ln() / decay) as usize).min(MOST_MODES)
+    /// Modes that resolve on all rings what the images do. On a ring of radius $r$ at $z$ the modes
+    /// of a source at $(\rho, \zeta)$ fall as $e^{-n\eta}$ with
+    /// $\cosh\eta = 1 + \frac{(r - \rho)^2 + (z - \zeta)^2}{2r\rho}$.
+    fn modes(&self, rings: &[Meridian], tolerance: f64) -> usize {
+        let Meridian { r: rho, z: zeta } = self.images;
+        let decay = |ring: &Meridian| {
+            let square = (ring.r - rho).powi(2) + (ring.z - zeta).powi(2);
+            (1.0 + square / (2.0 * ring.r * rho)).acosh()
+        };
+        let slowest = rings.iter().map(decay).fold(f64::INFINITY, f64::min);
+        ((self.digits(tolerance) / slowest) as usize).min(MOST_MODES)
     }
+
+    /// What is to be resolved of the images, as a logarithm.
+    fn digits(&self, tolerance: f64) -> f64 {
+        (-tolerance.ln() - self.weaker).max(0.0)
+    }
+}
+
+/// Rings of a body, three on each panel.
+fn rings(curve: &dyn GeneratingCurve, panels: &Panels) -> Vec<Meridian> {
+    let on_panel = |panel: &Panel| [-0.5, 0.0, 0.5].map(|t| curve.point(panel.at(t)));
+    panels.iter().flat_map(on_panel).collect()
 }
 
 /// Panels bisected until each is short beside what it faces.
 fn graded(
     curve: &dyn GeneratingCurve,
     mut panels: Panels,
+    order: usize,
     facing: &[Facing],
     tolerance: f64,
 ) -> Panels {
-    // The Bernstein ellipse through a point at distance x from the middle of a panel of half length
-    // 1 has sinh(log rho) = x.
-    let needed = (-GAP_DIGITS * tolerance.ln() / ORDER as f64).sinh();
     for _ in 0..DEEPEST {
         let marked: Vec<bool> = panels
             .iter()
@@ -195,6 +224,9 @@ fn graded(
                         .iter()
                         .map(|p| (p.r - facing.point[0]).hypot(p.z - facing.point[1]));
                     let away = away.fold(f64::INFINITY, f64::min);
+                    // The Bernstein ellipse through a point at distance x from the middle of a
+                    // panel of half length 1 has sinh(log rho) = x.
+                    let needed = (facing.digits(tolerance) / order as f64).sinh();
                     0.5 * length * needed > facing.depth.hypot(away)
                 })
             })
@@ -317,7 +349,7 @@ mod tests {
         Kind {
             resolution: Arc::new(Resolution {
                 panels: Panels::equal_arcs(&*curve, panels).unwrap(),
-                order: ORDER,
+                order: 16,
                 modes,
             }),
             shape: curve,

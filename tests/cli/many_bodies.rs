@@ -248,7 +248,9 @@ velocity = [0.0, 1.0, 0.3]
 kind = 'uniform'
 velocity = [0.1, 0.0, 0.2]
 [accuracy]
-tolerance = 1e-7
+panels = 4
+order = 16
+modes = 12
 ";
     let solved = solved(text);
     let surface = Surface::of(&solved.answer, |_| 128, &Silent).expect("surfaces");

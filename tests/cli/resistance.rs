@@ -56,7 +56,7 @@ fn json_has_matrices_functions_and_centre_of_every_shape() {
     assert!(ball.error_estimate < 1e-8 && pear.error_estimate < 1e-8);
     let value: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!(value["shapes"][1]["shape"], "pear");
-    assert_eq!(value["shapes"][1]["order"], 16);
+    assert_eq!(value["shapes"][1]["order"], 12);
 }
 
 #[test]

@@ -8,7 +8,7 @@ use stokes_body::progress::Progress;
 use stokes_suspension::{Flow, SuspensionError};
 
 /// Relative accuracy of what is drawn.
-const TOLERANCE: f64 = 1e-6;
+const TOLERANCE: f64 = 1e-5;
 
 /// A rectangle in space with a grid of points on it, corners included; lengths in the units of the
 /// case.

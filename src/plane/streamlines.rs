@@ -63,6 +63,7 @@ pub fn evenly_spaced(
         separation,
         shortest: 0.0,
         near: Neighbourhood::new(size, separation),
+        own: Neighbourhood::new(size, separation),
         lines: Vec::new(),
     };
     let [columns, rows] = size.map(|length| (length / separation).ceil().max(1.0) as usize);
@@ -92,7 +93,10 @@ struct Drawing<F> {
     separation: f64,
     /// The shortest line that is drawn.
     shortest: f64,
+    /// Points of all lines.
     near: Neighbourhood,
+    /// Points of the line that is being drawn, each with the length from its start.
+    own: Neighbourhood,
     lines: Vec<Streamline>,
 }
 
@@ -135,12 +139,12 @@ impl<F: Fn([f64; 2]) -> Option<[f64; 2]>> Drawing<F> {
         }
     }
 
-    fn line(&self, start: [f64; 2]) -> Option<Streamline> {
-        let mut own = Neighbourhood::new(self.size, self.separation);
-        own.add(start, 0.0);
-        let (mut points, closed) = self.follow(start, 1.0, &mut own);
+    fn line(&mut self, start: [f64; 2]) -> Option<Streamline> {
+        self.own.clear();
+        self.own.add(start, 0.0);
+        let (mut points, closed) = self.follow(start, 1.0);
         if !closed {
-            let (mut before, _) = self.follow(start, -1.0, &mut own);
+            let (mut before, _) = self.follow(start, -1.0);
             before.reverse();
             before.pop();
             before.append(&mut points);
@@ -152,8 +156,7 @@ impl<F: Fn([f64; 2]) -> Option<[f64; 2]>> Drawing<F> {
     }
 
     /// The points from `start` on, with or against the flow, and whether they lead back there.
-    /// `own` has those of the line that were found before, with the length from `start`.
-    fn follow(&self, start: [f64; 2], sign: f64, own: &mut Neighbourhood) -> (Vec<[f64; 2]>, bool) {
+    fn follow(&mut self, start: [f64; 2], sign: f64) -> (Vec<[f64; 2]>, bool) {
         let reach = OWN_NEAREST * self.separation;
         // Own points count from half a circle on that is as wide as the reach.
         let behind = 0.55 * PI * reach;
@@ -188,10 +191,10 @@ impl<F: Fn([f64; 2]) -> Option<[f64; 2]>> Drawing<F> {
                         points.push(start);
                         return (points, true);
                     }
-                    Back::No if own.any_within(next, reach, earlier) => break 'line,
+                    Back::No if self.own.any_within(next, reach, earlier) => break 'line,
                     Back::No => sure = points.len() + 1,
                 }
-                own.add(next, length);
+                self.own.add(next, length);
                 points.push(next);
             }
             last = end;
@@ -266,6 +269,8 @@ struct Neighbourhood {
     corner: [f64; 2],
     columns: usize,
     cells: Vec<Vec<([f64; 2], f64)>>,
+    /// The cells that have points.
+    filled: Vec<usize>,
 }
 
 impl Neighbourhood {
@@ -277,6 +282,7 @@ impl Neighbourhood {
             corner: size.map(|length| -0.5 * length),
             columns,
             cells: vec![Vec::new(); columns * rows],
+            filled: Vec::new(),
         }
     }
 
@@ -288,7 +294,18 @@ impl Neighbourhood {
 
     fn add(&mut self, point: [f64; 2], number: f64) {
         let [i, k] = self.place(point);
-        self.cells[k * self.columns + i].push((point, number));
+        let cell = k * self.columns + i;
+        if self.cells[cell].is_empty() {
+            self.filled.push(cell);
+        }
+        self.cells[cell].push((point, number));
+    }
+
+    /// Forgets all points.
+    fn clear(&mut self) {
+        for cell in self.filled.drain(..) {
+            self.cells[cell].clear();
+        }
     }
 
     /// Whether a point that counts is nearer than a distance, which must not exceed the cells'
@@ -296,11 +313,14 @@ impl Neighbourhood {
     fn any_within(&self, point: [f64; 2], reach: f64, counts: impl Fn(f64) -> bool) -> bool {
         let [i, k] = self.place(point);
         let rows = self.cells.len() / self.columns;
+        let within = |other: [f64; 2]| {
+            (point[0] - other[0]).powi(2) + (point[1] - other[1]).powi(2) < reach * reach
+        };
         (k.saturating_sub(1)..=(k + 1).min(rows - 1)).any(|k| {
             (i.saturating_sub(1)..=(i + 1).min(self.columns - 1)).any(|i| {
                 let cell = &self.cells[k * self.columns + i];
                 cell.iter()
-                    .any(|&(other, number)| distance(point, other) < reach && counts(number))
+                    .any(|&(other, number)| within(other) && counts(number))
             })
         })
     }

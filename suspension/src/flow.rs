@@ -100,6 +100,9 @@ struct Inner {
 /// What a fast sum is asked for beyond the tolerance of the flow: its own is relative to the whole,
 /// and terms may cancel.
 const MARGIN: f64 = 1e-2;
+/// How much worse than velocities at points tractions are evaluated: what is known of densities
+/// does not make them any better.
+const STRESSES: f64 = 30.0;
 /// The best tolerance of a fast sum.
 const FINEST_SUM: f64 = 1e-12;
 /// The best tolerance of a flow.
@@ -534,7 +537,7 @@ impl Flow {
         if bodies.len() == 1 {
             return Ok(found);
         }
-        let tolerance = self.of_densities(self.0.tolerance);
+        let tolerance = self.of_densities(STRESSES * self.0.tolerance);
         let in_body = |body: &BodyFlow, range: Range<usize>| -> Vec<Point3<f64>> {
             let targets = targets[range].iter();
             targets.map(|&x| body.frame.point_to_body(x)).collect()

@@ -25,10 +25,11 @@ pub fn streamlines(flow: &PlaneFlow, sections: &[Vec<[f64; 2]>], fastest: f64) -
     let Some(velocity) = flow.continued(|at| flow.plane.components(at.velocity)) else {
         return Vec::new();
     };
+    let inside = Inside::of(sections);
     let direction = |point: [f64; 2]| {
         let [u, v] = velocity.at(point);
         let speed = u.hypot(v);
-        let moves = speed > STILL * fastest && !contains(sections, point);
+        let moves = speed > STILL * fastest && !inside.contains(point);
         moves.then(|| [u / speed, v / speed])
     };
     let size = flow.plane.size;
@@ -106,13 +107,40 @@ fn ink(quantity: Quantity) -> &'static str {
     }
 }
 
-/// Whether an odd number of closed curves goes around a point.
-pub fn contains(curves: &[Vec<[f64; 2]>], [x, y]: [f64; 2]) -> bool {
-    let crossings = curves.iter().flat_map(|curve| {
-        let next = curve.iter().cycle().skip(1);
-        curve.iter().zip(next).filter(|([ax, ay], [bx, by])| {
-            (*ay > y) != (*by > y) && ax + (bx - ax) * ((y - ay) / (by - ay)) > x
-        })
-    });
-    crossings.count() % 2 == 1
+/// What an odd number of closed curves goes around.
+pub struct Inside<'a> {
+    /// Every curve with the least and the largest coordinates of its points.
+    curves: Vec<(&'a [[f64; 2]], [[f64; 2]; 2])>,
+}
+
+impl<'a> Inside<'a> {
+    /// The inside of some curves.
+    pub fn of(curves: &'a [Vec<[f64; 2]>]) -> Self {
+        let with_bounds = |curve: &'a Vec<[f64; 2]>| {
+            let bounds = [0, 1].map(|j| {
+                let along = curve.iter().map(|point| point[j]);
+                along.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], x| {
+                    [least.min(x), most.max(x)]
+                })
+            });
+            (&curve[..], bounds)
+        };
+        Self {
+            curves: curves.iter().map(with_bounds).collect(),
+        }
+    }
+
+    /// Whether an odd number of the curves goes around a point.
+    pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
+        let near = self.curves.iter().filter(|(_, [across, up])| {
+            across[0] <= x && x <= across[1] && up[0] <= y && y <= up[1]
+        });
+        let crossings = near.flat_map(|(curve, _)| {
+            let next = curve.iter().cycle().skip(1);
+            curve.iter().zip(next).filter(|([ax, ay], [bx, by])| {
+                (*ay > y) != (*by > y) && ax + (bx - ax) * ((y - ay) / (by - ay)) > x
+            })
+        });
+        crossings.count() % 2 == 1
+    }
 }

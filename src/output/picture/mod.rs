@@ -23,7 +23,7 @@ use super::View;
 use crate::plane::PlaneFlow;
 use canvas::{Canvas, arrow, outlined, rectangle, tenths};
 pub use error::PictureError;
-use lines::{arrows_path, contains, lines_path, streamlines};
+use lines::{Inside, arrows_path, lines_path, streamlines};
 #[cfg(feature = "png")]
 pub use pixels::png;
 pub use quantity::Quantity;
@@ -112,8 +112,9 @@ impl View {
 
 /// Arrows to the heads of swimmers, in those that the plane cuts.
 fn heads_path(canvas: &Canvas, view: &View) -> Path {
+    let inside = Inside::of(&view.sections);
     let seen = view.heads.iter();
-    let seen = seen.filter(|ends| ends.iter().all(|&end| contains(&view.sections, end)));
+    let seen = seen.filter(|ends| ends.iter().all(|&end| inside.contains(end)));
     let data = seen.fold(Data::new(), |data, ends| {
         let [tail, tip] = ends.map(|end| canvas.exactly(end));
         let way = [tip[0] - tail[0], tip[1] - tail[1]];

@@ -33,7 +33,8 @@ use super::tolerances::Tolerances;
 pub(crate) struct Miss {
     /// The largest speed.
     pub largest: f64,
-    /// The same on each panel, of the modes that the solution has.
+    /// The same on each panel, of the lower modes: those that are missing are taken for the upper
+    /// ones, whatever the panels are.
     pub panels: Vec<f64>,
     /// The largest coefficient of each mode, the finer surface's included.
     pub modes: Vec<f64>,
@@ -267,7 +268,8 @@ impl Miss {
     fn of(discretization: &Discretization, field: &SurfaceModes, n_max: usize) -> Self {
         let order = discretization.order();
         let count = 2 * field.modes() + 1;
-        let resolved = field.clone().truncated(n_max + 1);
+        let lower = if n_max < 4 { n_max } else { n_max / 2 };
+        let resolved = field.clone().truncated(lower + 1);
         let on_nodes = |field: &SurfaceModes| -> Vec<f64> {
             (0..discretization.nodes().len())
                 .into_par_iter()

@@ -28,13 +28,15 @@ use stokes_body::surface::SurfaceModes;
 /// gap asks for more.
 const MODES_PER_DIGIT: f64 = 2.0;
 const MODES_FAR_APART: usize = 8;
+/// Others whose modes are looked at where they are far away.
+const NEAREST: usize = 16;
+/// By how much, as a logarithm, what others do to a body is larger than the velocity that it is
+/// compared with: densities are, and they change faster.
+const LARGER: f64 = 2.0;
 /// Bisections of one panel at first.
 const DEEPEST: usize = 12;
 /// Most modes.
 const MOST_MODES: usize = 400;
-
-/// What all modes that are missing together may do, in the largest of them.
-const ALIASES: f64 = 8.0;
 
 /// The first resolutions for a tolerance.
 pub(crate) fn first(
@@ -68,10 +70,13 @@ pub(crate) fn first(
             of_data
         } else {
             let rings = rings(&*body.shape, &panels);
-            let in_gaps = facing.iter().map(|facing| facing.modes(&rings, tolerance));
+            let of_gaps = facing.iter().map(|facing| facing.modes(&rings, tolerance));
+            let of_nearest = nearest(&suspension.bodies, index)
+                .into_iter()
+                .map(|other| modes_of_distant(&rings, body, other, tolerance));
             let least = (-MODES_PER_DIGIT * tolerance.log10()) as usize;
             let far_apart = of_data.max(least.min(MODES_FAR_APART));
-            listed(in_gaps.fold(far_apart, usize::max))
+            listed(of_gaps.chain(of_nearest).fold(far_apart, usize::max))
         };
         let resolution = Resolution {
             panels: graded(&*body.shape, panels, order, &facing, tolerance),
@@ -178,23 +183,52 @@ impl Facing {
         })
     }
 
-    /// Modes that resolve on all rings what the images do. On a ring of radius $r$ at $z$ the modes
-    /// of a source at $(\rho, \zeta)$ fall as $e^{-n\eta}$ with
-    /// $\cosh\eta = 1 + \frac{(r - \rho)^2 + (z - \zeta)^2}{2r\rho}$.
+    /// Modes that resolve on all rings what the images do.
     fn modes(&self, rings: &[Meridian], tolerance: f64) -> usize {
-        let Meridian { r: rho, z: zeta } = self.images;
-        let decay = |ring: &Meridian| {
-            let square = (ring.r - rho).powi(2) + (ring.z - zeta).powi(2);
-            (1.0 + square / (2.0 * ring.r * rho)).acosh()
-        };
-        let slowest = rings.iter().map(decay).fold(f64::INFINITY, f64::min);
-        ((self.digits(tolerance) / slowest) as usize).min(MOST_MODES)
+        let slowest = slowest_decay(rings, self.images, 0.0);
+        (((LARGER + self.digits(tolerance)) / slowest) as usize).min(MOST_MODES)
     }
 
     /// What is to be resolved of the images, as a logarithm.
     fn digits(&self, tolerance: f64) -> f64 {
         (-tolerance.ln() - self.weaker).max(0.0)
     }
+}
+
+/// The bodies whose centres are nearest to that of another one.
+fn nearest(bodies: &[Body], index: usize) -> Vec<&Body> {
+    let center = bodies[index].frame.center();
+    let away = |body: &&Body| (body.frame.center() - center).norm_squared();
+    let others = bodies.iter().enumerate().filter(|(i, _)| *i != index);
+    let mut others: Vec<&Body> = others.map(|(_, body)| body).collect();
+    if others.len() > NEAREST {
+        others.select_nth_unstable_by(NEAREST, |a, b| away(a).total_cmp(&away(b)));
+        others.truncate(NEAREST);
+    }
+    others
+}
+
+/// Modes that resolve on all rings of a body what another one does from far away: it is a source
+/// at its centre.
+fn modes_of_distant(rings: &[Meridian], body: &Body, other: &Body, tolerance: f64) -> usize {
+    let center = Meridian::of(&body.frame.point_to_body(other.frame.center()));
+    let size = other.size() / body.frame.scale();
+    let slowest = slowest_decay(rings, center, size);
+    (((LARGER - tolerance.ln()) / slowest) as usize).min(MOST_MODES)
+}
+
+/// How fast the modes of what a source does on rings fall with their number, where that is slowest;
+/// on rings farther away than a distance.
+///
+/// On a ring of radius $r$ at $z$ the modes of a source at $(\rho, \zeta)$ fall as $e^{-n\eta}$
+/// with $\cosh\eta = 1 + \frac{(r - \rho)^2 + (z - \zeta)^2}{2r\rho}$: this is the argument
+/// of the toroidal functions that they are made of.
+fn slowest_decay(rings: &[Meridian], source: Meridian, beyond: f64) -> f64 {
+    let decay = |ring: &Meridian| {
+        let square = (ring.r - source.r).powi(2) + (ring.z - source.z).powi(2);
+        (square > beyond * beyond).then(|| (1.0 + square / (2.0 * ring.r * source.r)).acosh())
+    };
+    rings.iter().filter_map(decay).fold(f64::INFINITY, f64::min)
 }
 
 /// Rings of a body, three on each panel.
@@ -323,9 +357,7 @@ fn wanted(kind: &Kind, miss: &Miss, allowed: f64) -> (Vec<bool>, bool) {
         .fold(0.0, |a: f64, &b| a.max(b));
     let more_modes = beyond > 0.25 * allowed;
     let worst = miss.panels.iter().fold(0.0, |a: f64, &b| a.max(b));
-    // Where modes are short, those that are missing are taken for lower ones on all panels.
-    let by_alias = if more_modes { ALIASES * beyond } else { 0.0 };
-    let threshold = allowed.max(0.02 * worst).max(by_alias);
+    let threshold = allowed.max(0.02 * worst);
     let marked: Vec<bool> = (miss.panels.iter())
         .map(|&of_panel| of_panel > threshold)
         .collect();
@@ -376,9 +408,9 @@ mod tests {
         // A panel that stands out; modes that are missing, which all panels feel; both; nothing but
         // a little of that; nothing.
         assert_eq!(refined_of([1e-3, 1e-6, 1e-6, 1e-6], 1e-9, 1e-5), (5, 8));
-        assert_eq!(refined_of([3e-3, 2e-3, 3e-3, 1e-3], 1e-3, 1e-5), (4, 12));
-        assert_eq!(refined_of([3e-2, 2e-3, 3e-3, 1e-3], 1e-3, 1e-5), (5, 12));
-        assert_eq!(refined_of([2e-6; 4], 2e-6, 1.9e-6), (4, 12));
+        assert_eq!(refined_of([1e-6; 4], 1e-3, 1e-5), (4, 12));
+        assert_eq!(refined_of([3e-2, 2e-6, 3e-6, 1e-6], 1e-3, 1e-5), (5, 12));
+        assert_eq!(refined_of([1.8e-6; 4], 2e-6, 1.9e-6), (4, 12));
         assert_eq!(refined_of([2e-6; 4], 2e-6, 2.1e-6), (4, 8));
     }
 }

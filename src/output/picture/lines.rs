@@ -109,37 +109,47 @@ fn ink(quantity: Quantity) -> &'static str {
 
 /// What an odd number of closed curves goes around.
 pub struct Inside<'a> {
-    /// Every curve with the least and the largest coordinates of its points.
-    curves: Vec<(&'a [[f64; 2]], [[f64; 2]; 2])>,
+    curves: Vec<Bounded<'a>>,
+}
+
+/// A closed curve with the least and the largest coordinates of its points.
+struct Bounded<'a> {
+    points: &'a [[f64; 2]],
+    across: [f64; 2],
+    up: [f64; 2],
 }
 
 impl<'a> Inside<'a> {
     /// The inside of some curves.
     pub fn of(curves: &'a [Vec<[f64; 2]>]) -> Self {
-        let with_bounds = |curve: &'a Vec<[f64; 2]>| {
-            let bounds = [0, 1].map(|j| {
-                let along = curve.iter().map(|point| point[j]);
+        let bounded = |points: &'a Vec<[f64; 2]>| {
+            let [across, up] = [0, 1].map(|j| {
+                let along = points.iter().map(|point| point[j]);
                 along.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], x| {
                     [least.min(x), most.max(x)]
                 })
             });
-            (&curve[..], bounds)
+            Bounded { points, across, up }
         };
         Self {
-            curves: curves.iter().map(with_bounds).collect(),
+            curves: curves.iter().map(bounded).collect(),
         }
     }
 
     /// Whether an odd number of the curves goes around a point.
     pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
-        let near = self.curves.iter().filter(|(_, [across, up])| {
-            across[0] <= x && x <= across[1] && up[0] <= y && y <= up[1]
-        });
-        let crossings = near.flat_map(|(curve, _)| {
-            let next = curve.iter().cycle().skip(1);
-            curve.iter().zip(next).filter(|([ax, ay], [bx, by])| {
-                (*ay > y) != (*by > y) && ax + (bx - ax) * ((y - ay) / (by - ay)) > x
-            })
+        let within = |[least, most]: [f64; 2], x: f64| least <= x && x <= most;
+        let near = self.curves.iter();
+        let near = near.filter(|curve| within(curve.across, x) && within(curve.up, y));
+        let crossings = near.flat_map(|curve| {
+            let next = curve.points.iter().cycle().skip(1);
+            curve
+                .points
+                .iter()
+                .zip(next)
+                .filter(|([ax, ay], [bx, by])| {
+                    (*ay > y) != (*by > y) && ax + (bx - ax) * ((y - ay) / (by - ay)) > x
+                })
         });
         crossings.count() % 2 == 1
     }

@@ -48,7 +48,7 @@ pub struct Round<A> {
 /// Where [`FEW_PANELS`] do, as for bodies without anything small, nodes are as few as the
 /// tolerance allows: one for each digit and four more, an even number. So many resolve a density
 /// about as well as the few modes that it then has. Elsewhere panels shrink towards what is small,
-/// and more nodes on each take fewer in all.
+/// or towards joints where the curvature jumps, and more nodes on each take fewer in all.
 pub fn first_panels(
     curve: &dyn GeneratingCurve,
     tolerance: f64,
@@ -59,8 +59,9 @@ pub fn first_panels(
         .next_multiple_of(2)
         .clamp(fewest, most);
     let resolution = tolerance.sqrt().clamp(1e-7, 1e-2);
+    let is_smooth = Panels::pieces(curve)?.len() == 1;
     let few = Panels::resolving(curve, order, resolution)?.graded_across_joints(curve);
-    if few.len() <= FEW_PANELS {
+    if is_smooth && few.len() <= FEW_PANELS {
         return Ok((few, order));
     }
     let panels = Panels::resolving(curve, most, resolution)?;

@@ -2,8 +2,9 @@
 //!
 //! Two bodies that face each other over a gap $d$ see each other's images gather at a distance of
 //! $\delta = d/2 + \sqrt{d a + d^2/4}$ from the surface, for a radius $a$ (the poles of bispherical
-//! coordinates): what panels and modes have to resolve there. Modes and panels are chosen from a
-//! short list, so that alike bodies stay alike and share their factors.
+//! coordinates): what panels and modes have to resolve there. Bodies farther away are sources at
+//! their centres. Modes and panels are chosen from a short list, so that alike bodies stay alike
+//! and share their factors.
 
 use std::sync::Arc;
 

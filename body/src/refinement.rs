@@ -45,7 +45,7 @@ pub struct Round<A> {
 
 /// The panels that resolve the curve itself well enough to start with, and the nodes on each.
 ///
-/// Where [`FEW_PANELS`] do, as for bodies without anything small, nodes are as few as the
+/// Where four panels do, as for bodies without anything small, nodes are as few as the
 /// tolerance allows: one for each digit and four more, an even number. So many resolve a density
 /// about as well as the few modes that it then has. Elsewhere panels shrink towards what is small,
 /// or towards joints where the curvature jumps, and more nodes on each take fewer in all.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use bodies_of_revolution::{Frame, RigidMotion, Wrench};
-use inexact_krylov::Method;
+use inexact_krylov::{Method, Stop};
 use stokes_body::layers::Layers;
 use stokes_body::progress::Progress;
 use stokes_body::surface::SurfaceModes;
@@ -162,11 +162,6 @@ impl Assembly {
         &self.tolerances
     }
 
-    /// Asks for a residual that is smaller by this factor.
-    pub fn tighten(&mut self, factor: f64) {
-        self.tolerances.tighten(factor);
-    }
-
     /// By how much every body's boundary velocity is off; none for a body alone.
     pub fn misses(
         &mut self,
@@ -185,12 +180,16 @@ impl Assembly {
 
     /// Solves, from an earlier solution if there is one; the bodies must be in the places that this
     /// was made for.
+    ///
+    /// `further` looks at what was found. It says by what factor the residual has to fall for the
+    /// iteration to go on from there, or that the solution does.
     pub fn solve(
         &mut self,
         suspension: &Suspension,
         before: Option<&Start>,
         options: &Options,
         progress: &dyn Progress,
+        mut further: impl FnMut(&Solution) -> Option<f64>,
     ) -> Result<Solution, SuspensionError> {
         self.solved += 1;
         let bodies = &suspension.bodies;
@@ -203,17 +202,46 @@ impl Assembly {
         }
         let imposed = self.imposed(suspension)?;
         let (imposed_fields, data) = self.right_hand_side(bodies, &imposed, &mut seconds)?;
-        let Iterated {
-            unknown,
-            residual,
-            iteration,
-        } = self.iterated(bodies, &data, before, options, progress, &mut seconds)?;
-        let densities = self.densities(&unknown);
-        let of_others = self.felt_by_constrained(&unknown)?;
+        let mut first = match before {
+            Some(before) if self.coupling.is_some() => {
+                before.unknowns(bodies, &self.classes, &self.layout)?
+            }
+            _ => None,
+        };
+        let mut earlier: Option<Iteration> = None;
+        let mut solution = loop {
+            let mut found = self.iterated(&data, first, options, progress, &mut seconds)?;
+            if let Some(earlier) = earlier {
+                found.iteration = found.iteration.after(earlier);
+            }
+            let solution = self.solution(bodies, &imposed, &imposed_fields, &found)?;
+            match further(&solution) {
+                Some(factor) if found.iteration.stop == Stop::Converged => {
+                    self.tolerances.tighten(factor);
+                    earlier = Some(found.iteration);
+                    first = Some(found.unknown);
+                }
+                _ => break solution,
+            }
+        };
         seconds.iterate += start.elapsed().as_secs_f64();
+        solution.seconds = seconds;
         if let Some(coupling) = &mut self.coupling {
             coupling.system.free_buffers();
         }
+        Ok(solution)
+    }
+
+    /// What an unknown means for the bodies.
+    fn solution(
+        &mut self,
+        bodies: &[Body],
+        imposed: &[Imposed],
+        imposed_fields: &[f64],
+        found: &Iterated,
+    ) -> Result<Solution, SuspensionError> {
+        let densities = self.densities(&found.unknown);
+        let of_others = self.felt_by_constrained(&found.unknown)?;
         let near = (self.coupling.as_ref()).map(|coupling| coupling.system.interactions.near());
         let mut solution = Solution {
             unknown: Vec::new(),
@@ -223,8 +251,8 @@ impl Assembly {
             wrenches: Vec::new(),
             residual_speeds: Vec::new(),
             largest_imposed: imposed.iter().fold(0.0f64, |most, i| most.max(i.largest)),
-            iteration,
-            seconds,
+            iteration: found.iteration.clone(),
+            seconds: Seconds::default(),
             unknowns: (0..bodies.len())
                 .map(|body| self.classes.of(body).factors().unknowns())
                 .sum(),
@@ -240,19 +268,20 @@ impl Assembly {
             let on = &class.tables.discretization;
             let mine = self.layout.of(i);
             let of = |field: &[f64]| SurfaceModes::from_scaled(on, &field[mine.clone()]);
-            solution.unknown.push(of(&unknown));
-            let left = of(&residual);
+            solution.unknown.push(of(&found.unknown));
+            let left = of(&found.residual);
             let azimuths = 2 * left.modes() + 1;
             let speeds = (0..on.nodes().len()).map(|k| left.length_at(k, azimuths));
             solution.residual_speeds.push(speeds.fold(0.0, f64::max));
-            let found = self.constraints[i].as_ref().map(|constraint| {
+            let motion = self.constraints[i].as_ref().map(|constraint| {
                 let alone = &imposed_fields[mine.clone()][..constraint.len()];
                 let others = &of_others[mine.clone()][..constraint.len()];
                 let felt: Vec<f64> = alone.iter().zip(others).map(|(a, b)| a - b).collect();
                 constraint.motion(&felt)
             });
-            solution.slips.push(imposed.slip);
-            solution.push(class, body, of(&densities), imposed.single, found);
+            solution.slips.push(imposed.slip.clone());
+            let single = imposed.single.clone();
+            solution.push(class, body, of(&densities), single, motion);
         }
         Ok(solution)
     }
@@ -269,9 +298,8 @@ impl Assembly {
     /// The unknown, by iteration; of a body alone it is what is imposed.
     fn iterated(
         &mut self,
-        bodies: &[Body],
         data: &[f64],
-        before: Option<&Start>,
+        first: Option<Vec<f64>>,
         options: &Options,
         progress: &dyn Progress,
         seconds: &mut Seconds,
@@ -282,10 +310,6 @@ impl Assembly {
                 residual: vec![0.0; data.len()],
                 iteration: Iteration::direct(),
             });
-        };
-        let first = match before {
-            Some(before) => before.unknowns(bodies, &self.classes, &self.layout)?,
-            None => None,
         };
         let interactions = &coupling.system.interactions;
         let summed = interactions.seconds_of_sums;

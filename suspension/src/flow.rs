@@ -100,8 +100,8 @@ struct Inner {
 /// What a fast sum is asked for beyond the tolerance of the flow: its own is relative to the whole,
 /// and terms may cancel.
 const MARGIN: f64 = 1e-2;
-/// How much worse than velocities at points tractions are evaluated: what is known of densities
-/// does not make them any better.
+/// The tolerance of tractions over that of velocities at points: densities are not known so well
+/// that more would show.
 const STRESSES: f64 = 30.0;
 /// The best tolerance of a fast sum.
 const FINEST_SUM: f64 = 1e-12;

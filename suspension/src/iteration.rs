@@ -27,13 +27,15 @@ pub struct Iteration {
 
 impl Iteration {
     /// This one and what it was after.
-    pub(crate) fn after(mut self, mut before: Self) -> Self {
-        before.history.extend(self.history.drain(1..));
+    pub(crate) fn after(self, mut before: Self) -> Self {
+        // It began where the other one ended.
+        before.history.extend(self.history.into_iter().skip(1));
         Self {
             iterations: before.iterations + self.iterations,
             products: before.products + self.products,
             history: before.history,
-            ..self
+            residual: self.residual,
+            stop: self.stop,
         }
     }
 

@@ -252,25 +252,20 @@ impl Rounds<'_> {
         start: Option<&Start>,
     ) -> Result<Solution, SuspensionError> {
         let suspension = self.suspension;
-        let solution = assembly.solve(suspension, start, self.options, self.progress)?;
-        check_iteration(&solution.iteration, assembly.tolerances())?;
-        let wanted = match (self.wanted, self.options.residual) {
-            (Some(wanted), None) if !self.is_alone() && !self.narrow => wanted,
-            _ => return Ok(solution),
+        let mut wanted = match (self.wanted, self.options.residual) {
+            (Some(wanted), None) if !self.is_alone() && !self.narrow => Some(wanted),
+            _ => None,
         };
-        let speed = largest_speed(suspension, &solution);
-        let left = from_misses(suspension, &solution, &solution.residual_speeds, speed);
-        let is_worth_it = left.is_finite() && left > MOST_LEFT * wanted;
-        if !is_worth_it || solution.iteration.stop != Stop::Converged {
-            return Ok(solution);
-        }
-        assembly.tighten(AIM_LEFT * wanted / left);
-        let start = Start::new(&suspension.bodies, &solution);
-        let mut further = assembly.solve(suspension, Some(&start), self.options, self.progress)?;
-        check_iteration(&further.iteration, assembly.tolerances())?;
-        further.seconds = solution.seconds + further.seconds;
-        further.iteration = further.iteration.after(solution.iteration);
-        Ok(further)
+        let further = |solution: &Solution| {
+            // Once: what is left after that is the check's to tell.
+            let wanted = wanted.take()?;
+            let speed = largest_speed(suspension, solution);
+            let left = from_misses(suspension, solution, &solution.residual_speeds, speed);
+            (left.is_finite() && left > MOST_LEFT * wanted).then(|| AIM_LEFT * wanted / left)
+        };
+        let solution = assembly.solve(suspension, start, self.options, self.progress, further)?;
+        check_iteration(&solution.iteration, assembly.tolerances())?;
+        Ok(solution)
     }
 
     /// One solution and its estimated error. Below `compared_below`, a solution on finer surfaces
@@ -364,18 +359,16 @@ impl Rounds<'_> {
             }
         };
         let start = Start::new(bodies, solution);
-        let mut found = finer.solve(self.suspension, Some(&start), self.options, self.progress)?;
-        for _ in 0..TIGHTENED {
+        let mut tightened = 0;
+        let further = |found: &Solution| {
             // Residuals are small in the mean: in a gap, where panels are short, they may be all
             // that was off.
             let left = found.residual_speeds.iter().copied().fold(0.0, f64::max);
-            if left <= FINER * worst || found.iteration.stop != Stop::Converged {
-                break;
-            }
-            finer.tighten(FINER * worst / left);
-            let start = Start::new(bodies, &found);
-            found = finer.solve(self.suspension, Some(&start), self.options, self.progress)?;
-        }
+            tightened += 1;
+            (tightened <= TIGHTENED && left > FINER * worst).then(|| FINER * worst / left)
+        };
+        let (suspension, options) = (self.suspension, self.options);
+        let found = finer.solve(suspension, Some(&start), options, self.progress, further)?;
         assembly.keep_finer(finer);
         Ok(Some(found))
     }

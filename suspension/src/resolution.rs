@@ -186,7 +186,7 @@ impl Facing {
 
     /// Modes that resolve on all rings what the images do.
     fn modes(&self, rings: &[Meridian], tolerance: f64) -> usize {
-        let slowest = slowest_decay(rings, self.images, 0.0);
+        let slowest = slowest_decay(rings, self.images, self.depth);
         (((LARGER + self.digits(tolerance)) / slowest) as usize).min(MOST_MODES)
     }
 
@@ -218,18 +218,19 @@ fn modes_of_distant(rings: &[Meridian], body: &Body, other: &Body, tolerance: f6
     (((LARGER - tolerance.ln()) / slowest) as usize).min(MOST_MODES)
 }
 
-/// How fast the modes of what a source does on rings fall with their number, where that is slowest;
-/// on rings farther away than a distance.
+/// How fast the modes of what a source does on rings fall with their number, where that is slowest.
+/// No ring counts as nearer than `least`: a body that is not convex may reach around the source.
 ///
 /// On a ring of radius $r$ at $z$ the modes of a source at $(\rho, \zeta)$ fall as $e^{-n\eta}$
 /// with $\cosh\eta = 1 + \frac{(r - \rho)^2 + (z - \zeta)^2}{2r\rho}$: this is the argument
 /// of the toroidal functions that they are made of.
-fn slowest_decay(rings: &[Meridian], source: Meridian, beyond: f64) -> f64 {
+fn slowest_decay(rings: &[Meridian], source: Meridian, least: f64) -> f64 {
     let decay = |ring: &Meridian| {
         let square = (ring.r - source.r).powi(2) + (ring.z - source.z).powi(2);
-        (square > beyond * beyond).then(|| (1.0 + square / (2.0 * ring.r * source.r)).acosh())
+        let square = square.max(least * least);
+        (1.0 + square / (2.0 * ring.r * source.r)).acosh()
     };
-    rings.iter().filter_map(decay).fold(f64::INFINITY, f64::min)
+    rings.iter().map(decay).fold(f64::INFINITY, f64::min)
 }
 
 /// Rings of a body, three on each panel.
